@@ -63,6 +63,8 @@ def _type(entry: dict[str, Any]) -> str:
         return f"list of {_type(entry['items'])}" if "items" in entry else "list"
     if entry.get("type") == "object":
         return f"table of {_type(entry['additionalProperties'])}"
+    if entry["type"] == ["number", "string"]:
+        return "number"
     return {"boolean": "true or false"}.get(entry["type"], entry["type"])
 
 

@@ -77,18 +77,22 @@ class Lead:
     """the x in m of the winch, where nothing deflects"""
     depth: Annotated[Number, In("m")] = 0.0
     """the depth in m of the winch below the axis"""
+    ahead: Annotated[Number, In("m")] = 0.0
+    """the distance in m of the sheave beyond the head"""
+    below: Annotated[Number, In("m")] = 0.0
+    """the depth in m of the sheave below the axis"""
 
     @property
     def components(self) -> tuple[float, float]:
         """The components of the force along x and z in N."""
-        along, up = self.winch - self.x, -self.depth
+        along, up = self.winch - self.x - self.ahead, self.below - self.depth
         return self.force * along / hypot(along, up), self.force * up / hypot(along, up)
 
     def stiffness(self, direction: Direction) -> float:
         """Return the stiffness in N/m across the axis in a direction."""
-        distance = hypot(self.winch - self.x, self.depth)
-        part = ((self.winch - self.x) / distance) ** 2 if direction == "z" else 1.0
-        return self.force * part / distance
+        along, up = self.winch - self.x - self.ahead, self.below - self.depth
+        part = (along / hypot(along, up)) ** 2 if direction == "z" else 1.0
+        return self.force * part / hypot(along, up)
 
 
 def with_compression(

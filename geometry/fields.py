@@ -51,6 +51,10 @@ class BoomError(ValueError):
         self.what = what
 
 
+# Pattern of a number with its unit, as text.
+AMOUNT = r"\s*([+-]?[\d.]{1,40}(?:[eE][+-]?\d{1,3})?)(?:\s+|(?=[^\d\s.,+eE-]))(\S.*)"
+
+
 class In:
     """Unit of the numbers of a field, one of :mod:`.geometry.units`.
 
@@ -65,7 +69,18 @@ class In:
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
-        return {**handler(schema), "unit": ", ".join(self.units)}
+        return {**_or_text(handler(schema)), "unit": ", ".join(self.units)}
+
+
+def _or_text(schema: Any) -> Any:
+    """Return a JSON Schema with a text of a number and its unit wherever it has a number."""
+    if isinstance(schema, list):
+        return [_or_text(part) for part in schema]
+    if not isinstance(schema, dict):
+        return schema
+    text = {"type": ["number", "string"], "pattern": f"^{AMOUNT}$"}
+    parts = {key: _or_text(part) for key, part in schema.items()}
+    return parts | text if schema.get("type") == "number" else parts
 
 
 def fields_of(table: type) -> dict[str, FieldInfo]:

@@ -18,7 +18,18 @@ from protractile.geometry.segment import SAME_PLACE, Segment
 
 
 @part
-class Head:
+class Sheave:
+    """Sheave of the head, over which the rope leads from the winch to the hook."""
+
+    ahead: Annotated[Number, In("m")] = 0.0
+    """the distance in m beyond the end of the last segment, along the axis"""
+    below: Depth = 0.0
+    """the distance in m below the axis, which goes through the centroid of the last segment,
+    negative above it, or from a surface, as the depth of a lug"""
+
+
+@part
+class Head(Sheave):
     """Head or fork beyond the end of the last segment, with the place of the load.
 
     >>> fork = pt.Head(ahead=0.8, below=0.5)
@@ -26,11 +37,6 @@ class Head:
     [-800.0]
     """
 
-    ahead: Annotated[Number, In("m")] = 0.0
-    """the distance in m of the load beyond the end of the last segment, along the axis"""
-    below: Depth = 0.0
-    """the distance in m of the load below the axis, which goes through the centroid of the last
-    segment, negative above it, or from a surface, as the depth of a lug"""
     beside: Annotated[Number, In("m")] = 0.0
     """the distance in m of the load beside the axis, towards +y; only in space"""
     mass: Annotated[NotNegative, In("kg")] = 0.0

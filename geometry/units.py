@@ -22,13 +22,13 @@ _SIZES: Mapping[Dimension, Mapping[str, str]] = {
     _LENGTH: {"m": "1.0", "km": "1.0e3", "cm": "1.0e-2", "mm": "1.0e-3"}
     | dict.fromkeys(("µm", "um"), "1.0e-6"),
     _MASS: {"kg": "1.0", "t": "1.0e3"},
-    _TIME: {"s": "1.0", "ms": "1.0e-3", "µs": "1.0e-6", "min": "60.0"},
+    _TIME: {"s": "1.0", "ms": "1.0e-3", "µs": "1.0e-6", "min": "60.0", "h": "3600.0"},
     (0.0, 0.0, -1.0): {"Hz": "1.0"},
     _ACCELERATION: {"g": "9.80665"},
     _FORCE: {"N": "1.0", "daN": "10.0", "kN": "1.0e3", "MN": "1.0e6"},
     _MOMENT: {"Nm": "1.0", "kNm": "1.0e3", "Nmm": "1.0e-3", "J": "1.0", "kJ": "1.0e3"},
     _POWER: {"W": "1.0", "kW": "1.0e3"},
-    _PRESSURE: {"Pa": "1.0", "kPa": "1.0e3", "MPa": "1.0e6", "GPa": "1.0e9"},
+    _PRESSURE: {"Pa": "1.0", "kPa": "1.0e3", "MPa": "1.0e6", "GPa": "1.0e9", "bar": "1.0e5"},
 }
 _SYMBOLS = {name: (size, of) for of, sizes in _SIZES.items() for name, size in sizes.items()}
 
@@ -83,9 +83,10 @@ class Unit:
 SystemName = Literal["SI", "mm-t-s", "N-mm"]
 # The units that replace SI units in the other systems, which are the same.
 _MILLIMETRES = {"m": "mm", "kg": "t", "Pa": "MPa"}
-# An amount in an SI unit that another system replaces.
+_NUMBER = r"(-?\d+(?:\.\d+)?(?:e[+-]?\d+)?)"
+# An amount, or the two ends of a range, in an SI unit that another system replaces.
 _AMOUNT = re.compile(
-    r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[+-]?\d+)?) "
+    rf"(?<![\w.])(?:{_NUMBER} and )?{_NUMBER} "
     r"(m/s\^2|m/s|m|kg/m\^3|kg/m|kg|Pa|N/m|N m)(?![\w/^])"
 )
 _RAISED = str.maketrans("234", "²³⁴")
@@ -123,7 +124,9 @@ class System:
         """
 
         def converted(match: re.Match[str]) -> str:
-            return f"{self.of(float(match[1]), match[2]):.6g} {self.unit(match[2])}"
+            *numbers, unit = match.groups()
+            sizes = [f"{self.of(float(number), unit):.6g}" for number in numbers if number]
+            return f"{' and '.join(sizes)} {self.unit(unit)}"
 
         return message if self.name == "SI" else _AMOUNT.sub(converted, message)
 

@@ -148,8 +148,8 @@ def draw_mesh(scene: Scene, overlap: Overlap) -> Image.Image:
     )
     sheet.mark_x(camera, middle - 0.45 * width, middle + 0.45 * width)
     edges = np.linalg.norm(np.roll(corners, 1, axis=1) - corners, axis=2)
-    sheet.write(
-        "the mesh at the overlap, to scale",
+    sheet.entitle("the mesh at the overlap, to scale")
+    sheet.explain(
         f"edges of {np.median(edges.min(axis=1)):.2g} m; walls of the outer segment are taken away "
         "to show the inner one\nmesh lines lie where the segments touch and where the outer "
         "segment ends",
@@ -189,8 +189,8 @@ def draw_sections(scene: Scene, instant: Instant, overlap: Overlap) -> Image.Ima
     handles, labels = panels[0].get_legend_handles_labels()
     sheet.figure.legend(handles, labels, loc="lower center", ncols=2, frameon=False)
     sheet.figure.subplots_adjust(left=0.09, right=0.98, top=0.78, bottom=0.19, wspace=0.08)
-    sheet.write(
-        instant.heading(scene),
+    sheet.entitle(instant.heading(scene))
+    sheet.explain(
         f"sections at the stations; drawn: changes of shape × {scale:g}, "
         "without what moves and turns each section as a whole\n"
         f"straight from node to node; dashed: undeformed; "

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, replace
+from functools import partial
 from math import cos, radians, sin
 from typing import Any, NamedTuple
 
@@ -17,10 +18,10 @@ from protractile.geometry.arrays import Array
 from protractile.geometry.axial import Lead, Thrust, with_compression
 from protractile.geometry.boom import Boom, BoomError, Direction, Joint, Segment, Stop
 from protractile.geometry.fields import check_kind, check_numbers, describe, error_in_python
-from protractile.geometry.head import Head
+from protractile.geometry.head import Head, Sheave
 from protractile.geometry.joint import BareStop
 from protractile.geometry.load import AngularAcceleration, Load, Moment, PartialLoad
-from protractile.geometry.place import Distance, at, resolve_segments
+from protractile.geometry.place import Distance, at, resolve_level, resolve_segments
 from protractile.geometry.section import COMPONENT
 from protractile.geometry.segment import SAME_PLACE
 from protractile.geometry.typography import choices
@@ -208,7 +209,8 @@ def oblique_forces(case: Case, segments: Sequence[Segment]) -> Iterator[ObliqueF
             yield ObliqueForce(at.segment, at.x, *force)
     for lead in leads(case, segments):
         along, up = lead.components
-        yield ObliqueForce(lead.segment, lead.x, np.array([along, 0.0, up]), Step())
+        sheave = Head(lead.ahead, lead.below)
+        yield ObliqueForce(lead.segment, lead.x, np.array([along, 0.0, up]), Step(), sheave)
 
 
 def wind_on_load(case: Case, table: WindPressureTable, segments: Sequence[Segment]) -> ObliqueForce:
@@ -221,8 +223,16 @@ def wind_on_load(case: Case, table: WindPressureTable, segments: Sequence[Segmen
 def _where_payload_hangs(
     case: Case, segments: Sequence[Segment], force: Array, history: History
 ) -> ObliqueForce:
-    head = None if case.head is None else case.head.in_boom_axes(segments[-1], _luffing(case))
+    head = head_of(case)
+    head = None if head is None else head.in_boom_axes(segments[-1], _luffing(case))
     return ObliqueForce(len(segments) - 1, segments[-1].end, force, history, head)
+
+
+def head_of(case: Case) -> Head | None:
+    """Return the head with the place of the load; without a table head, that of the sheave."""
+    if case.head is not None or case.rope is None or case.rope.sheave is None:
+        return case.head
+    return Head(case.rope.sheave.ahead, case.rope.sheave.below)
 
 
 def leads(case: Case, segments: Sequence[Segment]) -> Iterator[Lead]:
@@ -256,14 +266,20 @@ def lead_of(case: Case, segments: Sequence[Segment], weight: float) -> Iterator[
     if rope.falls is not None and hoist is not None and hoist.falls != 1:
         raise BoomError("rope.falls", "hoist.falls is given; leave one of them out")
     falls = rope.falls or (1 if hoist is None else hoist.falls)
+    if rope.sheave is not None and hoist is not None:
+        what = "the load of hoist hangs at the end of the boom; leave it out"
+        raise BoomError("rope.sheave", what)
+    at_end = partial(segments[-1].surfaces, end)
+    sheave = resolve_level(rope.sheave or Sheave(), "rope.sheave", at_end)
+    lead = Lead(last, end, weight / falls, foot.x - rope.winch, 0.0, sheave.ahead, sheave.below)
     if rope.ground is None:
-        yield Lead(last, end, weight / falls, foot.x - rope.winch)
+        yield lead
         return
     if case.luff is not None or (hoist is not None and (hoist.dropped or not hoist.hanging)):
         what = "the rope's lead across the boom is that at t = 0; leave luff or hoist out"
         raise BoomError("rope.ground", what)
     along, up = rope.ground.turned(_luffing(case))
-    yield Lead(last, end, weight / falls, foot.x + along, foot.depth - up)
+    yield replace(lead, winch=foot.x + along, depth=foot.depth - up)
 
 
 def payload_weight(case: Case) -> float:
@@ -295,11 +311,11 @@ def head_moments(case: Case, segments: Sequence[Segment]) -> Iterator[Load]:
     Raises:
         BoomError: the head weighs nothing, or a hoisted load hangs beside the end.
     """
-    if (head := case.head) is None:
+    if (head := head_of(case)) is None:
         return
     if case.hoist is not None and (head.ahead or head.below or head.beside or head.level):
         what = "the load of hoist hangs at the end of the boom; leave ahead, below and beside out"
-        raise BoomError("head", what)
+        raise BoomError("head" if case.head else "rope.sheave", what)
     if case.gravity is None and head.mass:
         raise BoomError("head.mass", "nothing weighs without the table gravity; give it")
     own = 0.0 if case.gravity is None else case.gravity.acceleration * head.mass
@@ -319,6 +335,9 @@ def wind(
         BoomError: there is not one shape factor, or one for each segment; the boom moves; a segment
             has no section; or the history is invalid.
     """
+    if not table.dynamic_pressure:
+        return
+    table.demand("shape_factor")
     for key, moves in {"drive": case.driven_segments, "slew": case.slew, "luff": case.luff}.items():
         if moves:
             what = f"the wind acts on the boom as it stands at t = 0; leave wind or {key} out"

@@ -24,7 +24,7 @@ from protractile.runs.case.actions import field_values
 from protractile.runs.case.contact import JointTable
 from protractile.runs.case.schema import Case
 from protractile.runs.case.sections import SegmentTable
-from protractile.runs.case.segments import infer_sections, segment_of
+from protractile.runs.case.segments import infer_sections, pinned_masses, segment_of
 
 
 def build_boom(case: Case) -> Boom:
@@ -71,7 +71,10 @@ def _segments_and_joints(case: Case) -> tuple[tuple[Segment, ...], tuple[Joint, 
     ends = _spans(case.segments, telescoped_joints(case))
     joints = tuple(_joint(case, number, ends) for number in range(len(case.joints)))
     sections = enumerate(infer_sections(case, joints))
-    return tuple(segment_of(case, number, one, ends[number]) for number, one in sections), joints
+    segments = [segment_of(case, number, one, ends[number]) for number, one in sections]
+    for number, mass in [*pinned_masses(case, segments)]:
+        segments[number] = replace(segments[number], masses=(*segments[number].masses, mass))
+    return tuple(segments), joints
 
 
 def hold_ground(changed: Case, original: Case) -> Case:

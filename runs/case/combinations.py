@@ -16,16 +16,19 @@ from protractile.geometry.boom import BoomError
 from protractile.geometry.typography import choices
 from protractile.runs.case.actions import payload_weight
 from protractile.runs.case.build import build_boom, check_names, hold_ground
+from protractile.runs.case.combination_tables import (
+    CombinationTable,
+    LoadCaseTable,
+)
 from protractile.runs.case.limits import CaseTable
 from protractile.runs.case.load_tables import (
     AxialTable,
-    CombinationTable,
     GroundAccelerationTable,
     Group,
-    LoadCaseTable,
     LoadTable,
     PayloadTable,
     TelescopingTable,
+    WindPressureTable,
 )
 from protractile.runs.case.messages import key_of_part
 from protractile.runs.case.schema import Case
@@ -89,7 +92,7 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
         payload = (payload or PayloadTable(mass=mass)).model_copy(update={"mass": mass})
     replacements: Mapping[str, Any] = {
         key: getattr(case if getattr(table, key) is None else table, key)
-        for key in ("loads", "axial", "base", "wind")
+        for key in ("loads", "axial", "base")
     }
     changed = case.model_copy(
         update={
@@ -98,6 +101,7 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
             "payload": payload,
             "joints": _joints(case, table),
             "telescoping": telescoping,
+            "wind": _wind(case, table),
             **dict.fromkeys(("hoist", "slew", "luff")),
             "load_cases": (),
             "combinations": (),
@@ -150,6 +154,10 @@ def _hung_mass(case: Case, table: LoadCaseTable) -> float:
     if table.payload is not None:
         return table.payload
     return 0.0 if case.hoist is None else case.hoist.mass
+
+
+def _wind(case: Case, table: LoadCaseTable) -> WindPressureTable | None:
+    return case.wind if table.wind is None else table.wind.over(case.wind)
 
 
 def _times(table: Table, factor: float, *keys: str) -> Table:
@@ -227,7 +235,7 @@ def _groups(case: Case, table: LoadCaseTable) -> Iterator[tuple[Group, str]]:
         yield "dead", "the weight of the boom"
     if case.payload is not None:
         yield case.payload.group, "the weight of the payload"
-    wind = case.wind if table.wind is None else table.wind
+    wind = _wind(case, table)
     if wind is not None and wind.dynamic_pressure:
         yield "wind", "the table wind"
     if _hung_mass(case, table):

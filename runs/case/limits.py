@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import reduce
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 from pydantic_core import InitErrorDetails, PydanticCustomError
@@ -47,6 +47,14 @@ def leaves(item: Any, steps: Steps = ()) -> Iterator[tuple[Steps, Any]]:
 def is_table(value: Any) -> bool:
     """Return True if a value is a table of a case: a :class:`CaseTable`, or a part of a boom."""
     return hasattr(type(value), "__pydantic_fields__")
+
+
+def tables_in(annotation: Any) -> Iterator[type]:
+    """Yield the classes of the tables that an annotation contains."""
+    if isinstance(annotation, type) and hasattr(annotation, "__pydantic_fields__"):
+        yield annotation
+    for part in get_args(annotation):
+        yield from tables_in(part)
 
 
 def walk_tables(table: Any, key: str = "") -> Iterator[tuple[str, Any]]:

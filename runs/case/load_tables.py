@@ -1,29 +1,34 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Tables of a case for histories, loads, load cases, combinations and spectra."""
+"""Tables of a case for histories, loads, payload, rope, wind and telescoping."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from math import prod
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    SerializerFunctionWrapHandler,
+    model_serializer,
+    model_validator,
+)
 
 from protractile.dynamics.excitation import History, PiecewiseLinear, Ramp, Sine, Step
 from protractile.geometry.cylinder import EarthPoint
 from protractile.geometry.fields import (
     BoomError,
-    Few,
     Flag,
     In,
-    Name,
     NotNegative,
     Number,
     Positive,
+    describe,
     is_number,
     names_of,
     rising,
 )
+from protractile.geometry.head import Sheave
 from protractile.geometry.place import Place
 from protractile.geometry.typography import choices
 from protractile.geometry.wind import AIR_DENSITY
@@ -206,7 +211,7 @@ class WindPressureTable(HistoryTable):
             lambda value: (value,) if is_number(value) else value,
             json_schema_input_type=Positive | tuple[Positive, ...],
         ),
-    ]
+    ] = ()
     """the shape factor (force coefficient) of all segments, or one for each segment"""
     load_area: Annotated[NotNegative, In("m^2")] = 0.0
     """the area in m^2 of the load at the tip in the wind"""
@@ -217,14 +222,48 @@ class WindPressureTable(HistoryTable):
 
     @property
     def dynamic_pressure(self) -> float:
-        """The dynamic pressure in Pa at the value 1 of the history."""
-        return self.pressure if self.speed is None else 0.5 * AIR_DENSITY * self.speed**2
+        """The dynamic pressure in Pa at the value 1 of the history.
+
+        Raises:
+            BoomError: neither pressure nor speed is given.
+        """
+        if self.speed is not None:
+            return 0.5 * AIR_DENSITY * self.speed**2
+        self.demand("pressure")
+        return self.pressure
+
+    def demand(self, key: str) -> None:
+        """Check that the table, or that of the case beneath it, has a key.
+
+        Raises:
+            BoomError: it has not.
+        """
+        if key not in self.model_fields_set:
+            raise BoomError(f"wind.{key}", f"missing; it is {describe(type(self), key)}")
+
+    def over(self, other: Self | None) -> Self:
+        """Return this wind of a load case with the keys that it leaves out from another wind.
+
+        A pressure or a speed replaces both and the history, and a history replaces the history.
+        """
+        given = self.model_fields_set
+        left = set() if other is None else other.model_fields_set - given
+        amounts, histories = {"pressure", "speed"}, {*HistoryTable.model_fields}
+        if given & amounts:
+            left -= amounts
+        if given & (amounts | histories):
+            left -= histories
+        return self.model_copy(update={key: getattr(other, key) for key in left})
+
+    @model_serializer(mode="wrap")
+    def _given(self, serialize: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Return the keys that are given: what a saved load case leaves out is the case's."""
+        return {
+            key: value for key, value in serialize(self).items() if key in self.model_fields_set
+        }
 
     @model_validator(mode="after")
     def _has_an_amount(self) -> Self:
-        if (self.speed, self.file) == (None, None) and "pressure" not in self.model_fields_set:
-            raise error_at(self, "missing", "pressure")
-        # A saved case has the defaults too.
         if self.speed is not None and self.pressure != 1.0:
             raise superfluous_error(self, "pressure", "speed")
         return self
@@ -245,6 +284,10 @@ class RopeTable(CaseTable):
     ground: EarthPoint | None = None
     """the place { front, below } of a winch that does not luff, from the foot pin in earth axes;
     then leave winch out"""
+
+    sheave: Sheave | None = None
+    """the place { ahead, below } of the sheave at the head, where the lead begins, and the falls
+    without a table head; the end of the axis unless given"""
 
     @model_validator(mode="after")
     def _one_winch(self) -> Self:
@@ -307,131 +350,3 @@ class TelescopingTable(CaseTable):
     retracted: Annotated[NotNegative, In("m")] = 0.0
     """the least extension in m of each joint in the retracted boom; longer segments stay out by
     their difference in length"""
-
-
-class LoadCaseTable(CaseTable):
-    """A load case of the boom at rest. Its keys replace keys of the case."""
-
-    name: Name
-    """the name of the load case"""
-    angle: Annotated[float, Field(strict=True, ge=-90.0, le=90.0), In("deg")] | None = None
-    """the luffing angle in degrees, in place of gravity.angle; the ground of cylinders stays where
-    it is on the earth"""
-    extension: Annotated[dict[str, NotNegative], In("m")] = Field(default_factory=dict)
-    """inner segment = extension in m, in place of the joint's extension"""
-    telescoped: Telescoped | None = None
-    """the fraction of the stroke to which the boom is telescoped, in place of
-    telescoping.extension"""
-    payload: Annotated[NotNegative, In("kg")] | None = None
-    """a mass in kg at the tip in addition to the table payload; it weighs along and across the
-    boom, as a load of the group payload; the mass of the table hoist, if any, unless given"""
-    loads: Annotated[tuple[LoadTable, ...], Few] | None = Field(None, alias="load")
-    """the loads in place of all [[load]] of the case; the loads of the case unless given"""
-    axial: Annotated[tuple[AxialTable, ...], Few] | None = None
-    """the forces along the boom in place of all [[axial]] of the case; those unless given"""
-    base: Annotated[tuple[GroundAccelerationTable, ...], Few] | None = None
-    """the accelerations of the ground in place of all [[base]] of the case; those unless given"""
-    wind: (
-        Annotated[
-            WindPressureTable,
-            BeforeValidator(
-                lambda value: (
-                    {"pressure": float(value), "shape_factor": 1.0} if is_number(value) else value
-                ),
-                json_schema_input_type=NotNegative | WindPressureTable,
-            ),
-        ]
-        | None
-    ) = None
-    """the table of the wind in place of that of the case, or the product of pressure and shape
-    factor in Pa, 0 for none; the wind of the case unless given"""
-
-
-# The numbers whose product is the factor.
-Factor = Annotated[
-    tuple[NotNegative, ...],
-    In("1"),
-    Field(min_length=1, max_length=9),
-    BeforeValidator(
-        lambda value: (value,) if is_number(value) else value,
-        json_schema_input_type=NotNegative | tuple[NotNegative, ...],
-    ),
-]
-
-
-class FactorsTable(CaseTable):
-    """Factors of the groups of loads: a number, or numbers whose product is the factor."""
-
-    dead: Factor | None = None
-    """the factor of the weight of the boom and of the loads along its segments"""
-    payload: Factor | None = None
-    """the factor of the payload and of loads without another group"""
-    wind: Factor | None = None
-    """the factor of the table wind and of loads of the group wind"""
-    dynamic: Factor | None = None
-    """the factor of accelerations of the ground and of loads of the group dynamic"""
-    test: Factor | None = None
-    """the factor of loads of the group test"""
-
-    def of(self, group: Group) -> float | None:
-        """Return the factor on a group of loads; None if the table does not give it."""
-        numbers: tuple[float, ...] | None = getattr(self, group)
-        return None if numbers is None else prod(numbers)
-
-
-class ResistanceTable(CaseTable):
-    """Factors by which proofs divide resistances."""
-
-    material: Annotated[Positive, In("1")] = 1.0
-    """the factor on yield strengths"""
-    stability: Annotated[Positive, In("1")] = 1.0
-    """the factor on buckling resistances of plates and of the boom"""
-    pad: Annotated[Positive, In("1")] = 1.0
-    """the factor on allowable pressures of pads"""
-    cylinder: Annotated[Positive, In("1")] = 1.0
-    """the factor on capacities of cylinders"""
-    pin: Annotated[Positive, In("1")] = 1.0
-    """the factor on shear resistances of pins"""
-    tipping: Annotated[Positive, In("1")] = 1.0
-    """the factor on the stabilising moment of the chassis"""
-
-
-ProofName = Literal["yield", "plate", "column", "pad", "cylinder", "pin", "deflection", "tipping"]
-# The proofs of a combination unless it names others.
-PROOFS: tuple[ProofName, ...] = ("yield", "plate", "column", "pad", "cylinder", "pin")
-
-
-class CombinationTable(CaseTable):
-    """A combination of loads, in some of the load cases or in all."""
-
-    name: Name
-    """the name of the combination"""
-    load_cases: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
-    """the names of its load cases; all unless given"""
-    factors: FactorsTable
-    """group = factor, for each group of its load cases"""
-    resistance: ResistanceTable = ResistanceTable.model_validate({})
-    """the table of resistance factors"""
-    motion: Flag = False
-    """whether prove and runs take the extremes of the motion under these loads, by the first model
-    of beam elements, in place of those at rest"""
-    proofs: Annotated[tuple[ProofName, ...], Field(min_length=1)] = PROOFS
-    """the proofs that the combination demands; a proof compares the design effect with the limit
-    design value (EN 13001-3-1): yield (static strength), plate (plate buckling), column (column
-    buckling), pad (pressure), cylinder (force) and pin (shear) unless given; deflection (static
-    tip deflection) compares with limits.tip_at_rest, tipping the overturning with the stabilising
-    moment about each tipping line of the chassis"""
-
-
-class SpectrumTable(CaseTable):
-    """A sequence of load cases that repeats, for the proof of fatigue."""
-
-    name: Name
-    """the name of the spectrum"""
-    load_cases: Annotated[tuple[str, ...], Field(min_length=2, max_length=1000)]
-    """the names of the load cases in their order, from which the sequence starts again"""
-    repeats: Annotated[int, Field(strict=True, ge=1, le=10**9)]
-    """the number of repetitions in the service life"""
-    motion: Flag = False
-    """whether the cycles of the motions under the loads of the load cases count, by the first model
-    of beam elements, in place of their states at rest"""

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from difflib import get_close_matches
-from typing import Any, get_args
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -26,7 +26,7 @@ from protractile.geometry.fields import (
 from protractile.geometry.typography import choices
 from protractile.runs.case import schema
 from protractile.runs.case.kinds import KINDS
-from protractile.runs.case.limits import key_of
+from protractile.runs.case.limits import key_of, tables_in
 from protractile.runs.case.load_tables import AxialTable, HistoryTable
 from protractile.runs.case.sections import SHAPES
 from protractile.runs.process.bad_input import BadInput
@@ -119,8 +119,8 @@ def _explain(
 
 
 def _pair(location: Sequence[int | str]) -> str:
-    names = any(str(step).endswith("columns") for step in location)
-    return f"a list of two {'names' if names else 'numbers'}"
+    kinds = {"columns": "names", "force_columns": "names", "pins": "pins"}
+    return f"a list of two {next((kinds[step] for step in location if step in kinds), 'numbers')}"
 
 
 def _key(location: Sequence[int | str]) -> str:
@@ -146,16 +146,9 @@ def _table(location: Sequence[int | str]) -> type:
 def _tables(table: type) -> Iterator[tuple[str, type]]:
     """Yield key and class of each table within a table, at all levels."""
     for key, name in names_of(table).items():
-        for inner in _models(fields_of(table)[name].annotation):
+        for inner in tables_in(fields_of(table)[name].annotation):
             yield key, inner
             yield from _tables(inner)
-
-
-def _models(annotation: Any) -> Iterator[type]:
-    if isinstance(annotation, type) and hasattr(annotation, "__pydantic_fields__"):
-        yield annotation
-    for part in get_args(annotation):
-        yield from _models(part)
 
 
 def _field(location: Sequence[int | str]) -> tuple[type, str]:

@@ -11,8 +11,7 @@ import math
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
-from fractions import Fraction
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -24,8 +23,9 @@ from protractile.dynamics.motion import MOST_OUTPUTS
 from protractile.geometry.boom import Boom, BoomError
 from protractile.geometry.fields import describe, is_number
 from protractile.geometry.typography import choices
-from protractile.geometry.units import System, scale
+from protractile.geometry.units import System
 from protractile.runs import clients
+from protractile.runs.case.amounts import check_amounts, convert_to_si, read_amounts
 from protractile.runs.case.build import build_boom, check_ensemble_data, check_names
 from protractile.runs.case.columns import FileColumn, read_pairs
 from protractile.runs.case.combinations import check_combinations
@@ -34,7 +34,6 @@ from protractile.runs.case.kinds.model import ModelBoom
 from protractile.runs.case.kinds.shell import check_mesh_size
 from protractile.runs.case.limits import (
     MOST_MEMBERS,
-    CaseTable,
     Steps,
     key_of,
     leaves,
@@ -95,7 +94,7 @@ def load_checked(path: str) -> CheckedCase:
 
 def load_spreads(path: str) -> list[Spread]:
     """Return the normal distributions in a case file; errors are those of :func:`load`."""
-    return take_means(_read(path), path)[1]
+    return take_means(read_amounts(_read(path), path)[0], path)[1]
 
 
 def check_tables(tables: Mapping[str, object], path: str) -> CheckedCase:
@@ -106,8 +105,10 @@ def check_tables(tables: Mapping[str, object], path: str) -> CheckedCase:
     """
     try:
         with translated_errors(path):
-            means, _ = take_means(tables, path)
-            case = convert_to_si(_read_files(Case.model_validate(means), path))
+            plain, amounts = read_amounts(tables, path)
+            given = Case.model_validate(take_means(plain, path)[0])
+            check_amounts(given, amounts, path)
+            case = convert_to_si(_read_files(given, path))
     except OverflowError:
         what = "a number is too large for SI units; look for one that is out of proportion"
         raise BadInput(path, "units", what) from None
@@ -401,50 +402,3 @@ def take_means(tables: Mapping[str, object], file: str) -> tuple[dict[str, objec
         return mean
 
     return {key: replace_by_means(value, (key,)) for key, value in tables.items()}, spreads
-
-
-def convert_to_si(case: Case) -> Case:
-    """Return a case without files in SI units; ``shown_units`` keeps the original ones for display.
-
-    Raises:
-        OverflowError: a number overflows in SI units.
-    """
-    if case.units == "SI":
-        return case
-    system = System(case.units)
-    laws = [joint.exponent for joint in case.joints]
-    exponents = {}
-    for number, model in enumerate(case.models, start=1):
-        own = [] if model.contact is None else [model.contact.exponent_of("stiffness")]
-        exponents[f"model[{number}]"] = next(iter([*own, *laws]), None) or 2.0
-
-    def convert(key: str, table: Any) -> dict[str, Any]:
-        # Defaults are in SI units.
-        if isinstance(table, CaseTable):
-            names = table.model_fields_set
-        else:
-            names = {
-                attribute.name
-                for attribute in fields(table)
-                if getattr(table, attribute.name) != attribute.default
-            }
-        exponent, converted = exponents.get(key.partition(".")[0], 2.0), {}
-        for name in names:
-            if sizes := [system.size(unit) for unit in units_of(table, name, exponent)]:
-                converted[name] = _convert_value(getattr(table, name), sizes)
-        return converted
-
-    changes = {"units": "SI", "shown_units": case.shown_units or case.units}
-    converted: Case = map_tables(case, convert).model_copy(update=changes)
-    return converted
-
-
-def _convert_value(value: Any, sizes: Sequence[Fraction]) -> Any:
-    """Return a value in SI units; of several unit sizes, each converts one item of a tuple."""
-    if isinstance(value, dict):
-        return {key: _convert_value(item, sizes) for key, item in value.items()}
-    if isinstance(value, tuple) and len(sizes) == len(value) > 1 and isinstance(value[0], float):
-        return tuple(scale(number, size) for number, size in zip(value, sizes, strict=True))
-    if isinstance(value, tuple):
-        return tuple(_convert_value(item, sizes) for item in value)
-    return scale(value, sizes[0]) if isinstance(value, float) else value

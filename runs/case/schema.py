@@ -36,6 +36,11 @@ from protractile.geometry.place import Place
 from protractile.geometry.support import Support
 from protractile.geometry.units import System, SystemName
 from protractile.runs import clients
+from protractile.runs.case.combination_tables import (
+    CombinationTable,
+    LoadCaseTable,
+    SpectrumTable,
+)
 from protractile.runs.case.contact import JointTable
 from protractile.runs.case.kinds import KINDS
 from protractile.runs.case.kinds.calibration import CalibratedTable
@@ -54,18 +59,15 @@ from protractile.runs.case.limits import (
 )
 from protractile.runs.case.load_tables import (
     AxialTable,
-    CombinationTable,
     GroundAccelerationTable,
-    LoadCaseTable,
     LoadTable,
     PayloadTable,
     RopeTable,
-    SpectrumTable,
     TelescopingTable,
     WindPressureTable,
 )
 from protractile.runs.case.motion_tables import HoistTable, LuffTable, SlewTable
-from protractile.runs.case.sections import SegmentTable
+from protractile.runs.case.sections import PinnedMassTable, SegmentTable
 
 
 class TimeTable(CaseTable):
@@ -155,13 +157,13 @@ Velocity = Annotated[
     VelocityTable,
     BeforeValidator(
         lambda value: {"z": float(value)} if is_number(value) else value,
-        json_schema_input_type=Number | VelocityTable,
+        json_schema_input_type=Annotated[Number, In("m/s")] | VelocityTable,
     ),
 ]
 
 
 # Key that a plain number sets if it stands in place of the table.
-PLAIN_NUMBER_KEYS = {Support: "x", VelocityTable: "z"}
+PLAIN_NUMBER_KEYS = {Support: "x", VelocityTable: "z", WindPressureTable: "pressure"}
 
 
 class StartTable(CaseTable):
@@ -285,8 +287,7 @@ class Case(ClientKeys, CaseHeading):
     ensemble: EnsembleTable | None = None
     """the table of the ensembles; no ensembles unless given"""
     material: Material | None = None
-    """the table of elastic constants and density, for all segments without a material of their
-    own"""
+    """the table of elastic constants and density, of segments without a material of their own"""
     segments: Annotated[tuple[SegmentTable, ...], Field(min_length=1, max_length=MOST_SEGMENTS)] = (
         Field(alias="segment")
     )
@@ -298,6 +299,8 @@ class Case(ClientKeys, CaseHeading):
     telescoping: TelescopingTable | None = None
     """the table of the fraction of the stroke to which the boom is telescoped; the extensions of
     the joints unless given"""
+    pinned_masses: Annotated[tuple[PinnedMassTable, ...], Few] = Field((), alias="pinned_mass")
+    """the masses inside the boom that two segments carry, one [[pinned_mass]] each"""
     stops: Annotated[tuple[StopTable, ...], Field(max_length=MOST_STATIONS)] = Field(
         (), alias="stop"
     )

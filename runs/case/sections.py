@@ -23,7 +23,7 @@ from protractile.geometry.fields import (
     is_number,
 )
 from protractile.geometry.material import Material
-from protractile.geometry.place import End
+from protractile.geometry.place import End, Place
 from protractile.geometry.polygon import bent, closed_polygon
 from protractile.geometry.profiles import hexagon, octagon, u_section
 from protractile.geometry.section import Section
@@ -37,7 +37,7 @@ _Support = Annotated[
     Support,
     BeforeValidator(
         lambda value: {"x": value} if isinstance(value, str) or is_number(value) else value,
-        json_schema_input_type=Number | End | Support,
+        json_schema_input_type=Annotated[Number, In("m")] | End | Support,
     ),
 ]
 
@@ -262,3 +262,24 @@ class SegmentTable(CaseTable):
         if self.span is not None and self.length is not None:
             raise superfluous_error(self, "span", "length")
         return self
+
+
+class MassPinTable(CaseTable):
+    """A pin by which a segment carries a mass inside the boom."""
+
+    segment: str
+    """the name of the segment"""
+    x: Place
+    """the x in m"""
+
+
+class PinnedMassTable(CaseTable):
+    """A telescoping cylinder, or hoses, inside the boom, carried by a pin at each end."""
+
+    mass: Annotated[Positive, In("kg")]
+    """the mass in kg"""
+    pins: tuple[MassPinTable, MassPinTable]
+    """its two pins, with the segment and the x of each; they move with their segments"""
+    centre: Annotated[NotNegative, In("m")] | None = None
+    """the distance in m of its centre of mass from the first pin, towards the second one; halfway
+    unless given"""

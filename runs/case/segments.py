@@ -3,14 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from protractile.geometry.boom import BoomError, Joint, Lateral, Material, PointMass, Segment
 from protractile.geometry.box import infer_inner_section, infer_outer_section
 from protractile.geometry.fields import describe
+from protractile.geometry.place import at
 from protractile.geometry.section import Section, SectionError
 from protractile.geometry.taper import check_alike, mean_area, middle_section
+from protractile.runs.case.actions import segment_index
 from protractile.runs.case.schema import Case
 from protractile.runs.case.sections import SegmentTable
 
@@ -52,6 +54,33 @@ def segment_of(
         diaphragms=table.diaphragms,
         yield_strengths=tuple(table.yield_strengths.items()),
     )
+
+
+def pinned_masses(case: Case, segments: Sequence[Segment]) -> Iterator[tuple[int, PointMass]]:
+    """Yield the share of each pin of a mass inside the boom, with the index of its segment.
+
+    The shares are those of a beam on two supports. Statically they are exact for weights across the
+    boom; a motion has no inertia of the mass about its own centre.
+
+    Raises:
+        BoomError: a segment is unknown, or a pin or the centre is out of place.
+    """
+    for number, table in enumerate(case.pinned_masses, start=1):
+        places = []
+        for i, pin in enumerate(table.pins, start=1):
+            where = f"pinned_mass[{number}].pins[{i}]"
+            index = segment_index(f"{where}.segment", pin.segment, segments)
+            places.append((index, at(pin.x, *segments[index].ends)))
+            segments[index].check_place(f"{where}.x", places[-1][1])
+        part, length = 0.5, abs(places[1][1] - places[0][1])
+        if table.centre is not None:
+            if table.centre > length:
+                what = f"must not be above {length:g} m, the distance of the pins"
+                raise BoomError(f"pinned_mass[{number}].centre", f"{what}, got {table.centre:g} m")
+            part = table.centre / (length or 1.0)
+        for (index, x), share in zip(places, (1.0 - part, part), strict=True):
+            if share:
+                yield index, PointMass(x, share * table.mass)
 
 
 def material_of(case: Case, index: int) -> Material:

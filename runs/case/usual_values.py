@@ -11,7 +11,7 @@ from protractile.geometry.boom import Boom
 from protractile.geometry.chassis import Chassis
 from protractile.geometry.cylinder import Cylinder
 from protractile.geometry.fields import names_of
-from protractile.geometry.head import Head
+from protractile.geometry.head import Head, Sheave
 from protractile.geometry.joint import BareStop, Pad, SlidePad
 from protractile.geometry.material import Material
 from protractile.geometry.place import Level
@@ -19,18 +19,20 @@ from protractile.geometry.segment import PointMass
 from protractile.geometry.stiffeners import Collar, Diaphragm
 from protractile.geometry.support import Pin, Support
 from protractile.runs.case.actions import STANDARD_GRAVITY
+from protractile.runs.case.combination_tables import (
+    FactorsTable,
+    LoadCaseTable,
+    ResistanceTable,
+)
 from protractile.runs.case.contact import ContactTable, JointTable, RestitutionTable
 from protractile.runs.case.kinds.model import ModelTable
 from protractile.runs.case.limits import is_table, units_of, walk_tables
 from protractile.runs.case.load_tables import (
     AxialTable,
-    FactorsTable,
     GroundAccelerationTable,
     HistoryTable,
-    LoadCaseTable,
     LoadTable,
     PayloadTable,
-    ResistanceTable,
     RopeTable,
     TelescopingTable,
     WindPressureTable,
@@ -55,7 +57,7 @@ from protractile.runs.case.schema import (
     TimeTable,
     VelocityTable,
 )
-from protractile.runs.case.sections import SegmentTable
+from protractile.runs.case.sections import PinnedMassTable, SegmentTable
 
 # Larger numbers overflow in other units.
 _MOST = 1.0e300
@@ -240,6 +242,7 @@ def usual_of_tables(case: Case, boom: Boom) -> Ranges:
 def _of_parts(sizes: _Sizes) -> Ranges:
     """Return the usual ranges of the keys of segments, supports and cylinders."""
     bare, weight, length, *_ = sizes
+    carried = Usual("the mass at one place", 0.0, 50.0 * bare, 1.0e4)
     return {
         SegmentTable: {
             "rotary_inertia": Usual("the rotary inertia", 0.0, bare * length / 25.0, 100.0),
@@ -253,7 +256,10 @@ def _of_parts(sizes: _Sizes) -> Ranges:
             ),
             "viscous_damping": Usual("the viscous damping", 0.0, 1.0e3 * bare / length, 1.0e4),
         },
-        PointMass: {"mass": Usual("the mass at one place", 0.0, 50.0 * bare, 1.0e4)},
+        PointMass: {"mass": carried},
+        PinnedMassTable: {
+            "mass": carried, "centre": Usual("the place of the centre", 0.0, length, 50.0),
+        },
         Support: {
             "stiffness": sizes.spring("support"),
             "rotation_stiffness": Usual(
@@ -342,6 +348,7 @@ def _of_actions(sizes: _Sizes) -> Ranges:
     # The overlap refuses long ones, and a length of almost 0 is a constant extension.
     travel = Usual("the length of telescoping", 1.0e-3 * length, length, inf)
     hoisting = Usual("the length of hoisting", 2.0e-3 * length, 200.0, 1.0e3)
+    offset = Usual("the distance of the load", 0.0, 10.0, 100.0)
     deflection = Usual("the limit of deflections", 1.0e-5 * length, length, 1.0e3)
     return {
         # Smaller loads are compared with the boom as a whole.
@@ -363,10 +370,9 @@ def _of_actions(sizes: _Sizes) -> Ranges:
         },
         RopeTable: {"winch": Usual("the distance of the winch behind the foot", 0.0, 20.0, 50.0)},
         Level: dict.fromkeys(("bottom", "top"), Usual("the distance", 0.0, 0.3 * length, 20.0)),
+        Sheave: dict.fromkeys(("ahead", "below"), offset),
         Head: {
-            **dict.fromkeys(
-                ("ahead", "below", "beside"), Usual("the distance of the load", 0.0, 10.0, 100.0)
-            ),
+            **dict.fromkeys(("ahead", "below", "beside"), offset),
             "mass": Usual("the mass of the head", 0.0, 10.0 * bare, 1.0e4),
         },
         PayloadTable: {

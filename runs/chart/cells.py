@@ -24,9 +24,15 @@ from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.geometry.boom import Boom, BoomError, Segment
 from protractile.geometry.ground import force_name
 from protractile.geometry.typography import percent
+from protractile.runs.case.actions import head_of
 from protractile.runs.case.build import build_boom, telescoped_joints
+from protractile.runs.case.combination_tables import (
+    LoadCaseTable,
+)
 from protractile.runs.case.combinations import combine
-from protractile.runs.case.load_tables import LoadCaseTable, TelescopingTable
+from protractile.runs.case.load_tables import (
+    TelescopingTable,
+)
 from protractile.runs.case.schema import Case
 from protractile.runs.chart.keys import ChartTable, Keys
 from protractile.runs.pipeline.beam_states import static_states
@@ -286,7 +292,7 @@ class Search:
         """
         if self.angle is not None:
             return self.angle
-        chassis, head, length = self.case.chassis, self.case.head, self.configuration.length
+        chassis, head, length = self.case.chassis, head_of(self.case), self.configuration.length
         ahead = chassis.foot_ahead if chassis else 0.0
         if head is not None:
             ahead += head.level.front if head.level else 0.0

@@ -16,6 +16,7 @@ from protractile.geometry.boom import Boom
 from protractile.geometry.fields import describe, fields_of, is_number
 from protractile.geometry.fit import pad_room, room
 from protractile.runs.case import reading
+from protractile.runs.case.amounts import innermost
 from protractile.runs.case.build import build_boom, hold_ground
 from protractile.runs.case.kinds.finite_element import BeamElements
 from protractile.runs.case.kinds.model import select_kind
@@ -26,7 +27,7 @@ from protractile.runs.case.sanity import usual_ranges
 from protractile.runs.case.schema import Case
 from protractile.runs.process.bad_input import BadInput
 from protractile.runs.sweep.points import hold_plates, infer_plates
-from protractile.runs.sweep.variation import Place, Tables, innermost, numbers, unit_of, with_size
+from protractile.runs.sweep.variation import Place, Tables, numbers, unit_of, with_size
 
 # Name of the beam on the page, and number of its elements in the longest segment.
 BEAM, ELEMENTS = "beam", 4
@@ -146,7 +147,7 @@ class Draft:
         if keys[0] not in self._numbers:
             raise BadInput(self.file, key, "is not a number of the case; choose one of the list")
         place, value = self._numbers[keys[0]]
-        table, name = innermost(place, self.case)
+        table, name = innermost(place.steps, self.case)
         unit, system = unit_of(place, self.case), self.case.system
         ranges = [self._range(*self._numbers[control]) for control in keys]
         low, high = max(bounds[0] for bounds in ranges), min(bounds[1] for bounds in ranges)
@@ -164,7 +165,7 @@ class Draft:
 
     def _range(self, place: Place, value: float) -> tuple[float, float]:
         """Return the range of a number in SI units, within the limits of schema and checks."""
-        table, name = innermost(place, self.case)
+        table, name = innermost(place.steps, self.case)
         rules = fields_of(type(table))[name].metadata
         low = max((float(rule.ge) for rule in rules if hasattr(rule, "ge")), default=-math.inf)
         high = min((float(rule.le) for rule in rules if hasattr(rule, "le")), default=math.inf)

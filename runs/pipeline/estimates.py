@@ -19,8 +19,10 @@ from protractile.dynamics.excitation import History, is_constant
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.dynamics.motion import MOST_STEPS, Motion
 from protractile.runs.case.build import build_boom
+from protractile.runs.case.combination_tables import (
+    CombinationTable,
+)
 from protractile.runs.case.kinds.model import ModelTable
-from protractile.runs.case.load_tables import CombinationTable
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case, Model
 from protractile.runs.pipeline.models import build_on, initial_motion

@@ -11,7 +11,7 @@ from protractile.analysis.states import States
 from protractile.geometry.boom import Boom
 from protractile.geometry.chassis import CraneForce
 from protractile.geometry.load import Moment, PartialLoad
-from protractile.runs.case.actions import loads, tip_thrusts
+from protractile.runs.case.actions import head_of, loads, tip_thrusts
 from protractile.runs.case.combinations import CombinedCase, tip_masses
 from protractile.runs.case.schema import Case
 
@@ -33,8 +33,8 @@ def hook_place(case: Case, boom: Boom, angle: float, tip: float) -> tuple[float,
     """
     chassis, turn = case.chassis, radians(angle)
     length = boom.tip - foot_of(boom)
-    if case.head is not None:
-        head = case.head.in_boom_axes(boom.segments[-1], turn)
+    if (head := head_of(case)) is not None:
+        head = head.in_boom_axes(boom.segments[-1], turn)
         length, tip = length + head.ahead, tip - head.below
     ahead, above = (0.0, 0.0) if chassis is None else (chassis.foot_ahead, chassis.foot_above)
     return (

@@ -90,14 +90,6 @@ class BoomView:
         edges.points = places[edges["number"]]
         return edges
 
-    def draw_marks(self, sheet: Sheet, places: Array) -> str:
-        """Draw symbols and cylinders on a sheet, and return their legend."""
-        marks = marks_of(self.scene, self.rest.points, self.scale, 0.0)
-        for mark in marks:
-            line = self.camera.project(mark.at(places))
-            sheet.show_once(*sheet.picture.plot(*line.T, color=mark.color, linewidth=mark.width))
-        return join_words(dict.fromkeys(mark.kind for mark in marks)) if marks else ""
-
 
 def draw_boom(
     view: BoomView, instants: Sequence[Instant], until: float, pace: str = "", part: float = 1.0
@@ -117,6 +109,14 @@ def draw_boom(
     curve = sheet.axes(150, 85, 820, 150)
     curve.plot(time, tip, color=theme.FAINT, linewidth=2)
     curve.set(xlim=(time[0], until), xlabel="time (s)", ylabel="tip (mm)")
+    marks = marks_of(scene, view.rest.points, view.scale, 0.0)
+    symbols = join_words(dict.fromkeys(mark.kind for mark in marks)) if marks else ""
+    sheet.explain(
+        f"{'seen from above; ' if scene.from_above else ''}displacements and play × "
+        f"{view.scale:g}, sections × {SECTION_DRAWN:g}\ngrey: undeformed"
+        f"{', as at t = 0' if scene.boom.telescopes else ''}"
+        f"{f'; symbols: {symbols}' if symbols else ''}{pace}"
+    )
     with stage(camera.pixels, part) as plotter:
         # The undeformed boom is slightly farther from the camera, so that the deformed boom hides
         # it where both coincide.
@@ -134,18 +134,16 @@ def draw_boom(
             boom.points, edges.points = places, places[edges["number"]]
             boom["stress"] = view.stresses[instant.time]
             sheet.show(camera.render(plotter))
-            symbols = view.draw_marks(sheet, places)
+            for mark in marks:
+                line = camera.project(mark.at(places))
+                sheet.show_once(
+                    *sheet.picture.plot(*line.T, color=mark.color, linewidth=mark.width)
+                )
             last = int(np.abs(time - instant.time).argmin())
             now: dict[str, Any] = {"color": theme.FORCE, "markersize": 13, "clip_on": False}
             sheet.show_once(
                 *curve.plot(time[: last + 1], tip[: last + 1], color=theme.INK, linewidth=3),
                 *curve.plot(time[last], tip[last], "o", **now),
             )
-            sheet.write(
-                instant.heading(scene),
-                f"{'seen from above; ' if scene.from_above else ''}displacements and play × "
-                f"{view.scale:g}, sections × {SECTION_DRAWN:g}\ngrey: undeformed"
-                f"{', as at t = 0' if scene.boom.telescopes else ''}"
-                f"{f'; symbols: {symbols}' if symbols else ''}{pace}",
-            )
+            sheet.entitle(instant.heading(scene))
             yield sheet.image()

@@ -190,8 +190,8 @@ def draw_overlap(scenes: Sequence[Scene], instant: Instant) -> Image.Image | Non
     with stage(PIXELS) as plotter:
         view.draw_segments(plotter)
         sheet.show(view.camera.render(plotter))
-    sheet.write(
-        instant.heading(scenes[0]),
+    sheet.entitle(instant.heading(scenes[0]))
+    sheet.explain(
         f"{view_name}cut open; play and displacements relative to {outer} × {view.scale:g}, "
         f"walls not to scale\n{view.draw_forces(sheet)}",
     )

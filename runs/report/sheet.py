@@ -19,6 +19,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
 
@@ -189,13 +190,16 @@ class Sheet:
             artist.set_animated(True)
         self._temporary_artists += artists
 
-    def write(self, heading: str, explanation: str) -> None:
-        """Write the heading and the explanation of the next image above the picture."""
-        centred: dict[str, Any] = {"ha": "center", "va": "top"}
-        self.show_once(
-            self.figure.text(0.5, 0.98, heading, size=26, weight="bold", **centred),
-            self.figure.text(0.5, 0.925, explanation, size=19, **centred),
-        )
+    def entitle(self, heading: str) -> None:
+        """Write the heading of the next image above the picture."""
+        self.show_once(self._text(0.98, heading, size=26, weight="bold"))
+
+    def explain(self, explanation: str) -> None:
+        """Write the explanation of all images, which have not begun, below the heading."""
+        self._text(0.925, explanation, size=19)
+
+    def _text(self, height: float, text: str, **look: Any) -> Text:
+        return self.figure.text(0.5, height, text, ha="center", va="top", **look)
 
     def arrow(self, foot: Array, length: float, text: str) -> None:
         """Draw a vertical arrow with a label from a pixel (2,); negative lengths point down."""

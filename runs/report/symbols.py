@@ -24,6 +24,7 @@ from protractile.geometry.typography import number
 from protractile.runs.case import actions
 from protractile.runs.case.load_tables import LoadTable
 from protractile.runs.case.schema import Case
+from protractile.runs.case.segments import pinned_masses
 from protractile.runs.report import theme
 
 # Displayed height of a segment without plates, over the length of the boom.
@@ -160,12 +161,15 @@ def boom_symbols(case: Case, boom: Boom) -> Iterator[Symbol]:
                 yield _spread(boom, index, segment.ends, load, direction, "")
         for mass in segment_table.masses:
             yield _mass(index, at(mass.x, *segment.ends), f"mass, {number(mass.mass, 4)} kg")
+    for index, mass in pinned_masses(case, boom.segments):
+        yield _mass(index, mass.x, f"mass between two pins, {number(mass.mass, 4)} kg")
     hung: Callable[..., Symbol] = replace
-    if case.head is not None:
+    if (head := actions.head_of(case)) is not None:
         angle = 0.0 if case.gravity is None else radians(case.gravity.angle)
-        head = case.head.in_boom_axes(boom.segments[-1], angle)
+        head = head.in_boom_axes(boom.segments[-1], angle)
         hung = partial(replace, edge=0.0, arm=(head.ahead, head.beside, -head.below))
-        pin = _mass(len(boom.segments) - 1, boom.tip, f"head, {number(head.mass, 4)} kg")
+        what = f"head, {number(head.mass, 4)} kg" if case.head else "sheave"
+        pin = _mass(len(boom.segments) - 1, boom.tip, what)
         yield hung(pin, path=PIN)
     if case.payload is not None:
         payload = f"mass at the tip, {number(case.payload.mass, 4)} kg"
@@ -196,7 +200,8 @@ def boom_symbols(case: Case, boom: Boom) -> Iterator[Symbol]:
                 yield _spread(boom, blow.segment, blow.span, force, blow.direction, ", wind")
     for lead in boom.leads:
         along = f"{abbreviate(lead.force, 'N')} of the rope's lead"
-        yield Symbol("loads", lead.segment, (lead.x,), 0.0, FORCE_BACK, along)
+        arm = lead.ahead, 0.0, -lead.below
+        yield Symbol("loads", lead.segment, (lead.x,), 0.0, FORCE_BACK, along, arm=arm)
     for thrust in actions.thrusts(case, boom.segments):
         sign = FORCE_BACK if thrust.force > 0.0 else FORCE_ON
         along = f"{abbreviate(abs(thrust.force), 'N')} along the boom"

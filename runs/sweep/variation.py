@@ -17,10 +17,11 @@ from typing import Any
 
 import numpy as np
 
-from protractile.geometry.fields import is_number, names_of
+from protractile.geometry.fields import is_number
 from protractile.geometry.units import scale
-from protractile.runs.case.limits import Steps, is_table, key_of, leaves, units_of
-from protractile.runs.case.schema import PLAIN_NUMBER_KEYS, Case
+from protractile.runs.case.amounts import innermost
+from protractile.runs.case.limits import Steps, key_of, leaves, units_of
+from protractile.runs.case.schema import Case
 from protractile.runs.process.bad_input import BadInput
 
 # A case as nested dictionaries and lists.
@@ -127,23 +128,9 @@ def numbers(tables: Tables) -> Iterator[tuple[Place, float]]:
             yield Place(steps), value
 
 
-def innermost(place: Place, case: Case) -> tuple[Any, str]:
-    """Return the innermost table of a case that contains a number, and the field in this table."""
-    table: Any = case
-    name, here = "", table
-    for step in place.steps:
-        if is_table(here):
-            table, name = here, names_of(type(here))[str(step)]
-            here = getattr(table, name)
-        else:
-            here = here[step]
-    key = PLAIN_NUMBER_KEYS.get(type(here))
-    return (table, name) if key is None else (here, key)
-
-
 def unit_of(place: Place, case: Case) -> str:
     """Return the SI unit of a number of a case; empty if dimensionless."""
-    units = units_of(*innermost(place, case))
+    units = units_of(*innermost(place.steps, case))
     return units[0] if len(units) == 1 and units[0] != "1" else ""
 
 

@@ -5,12 +5,12 @@ Statics follows from Macaulay's brackets, frequencies follow from determinants.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
+import pytest
 from scipy.optimize import brentq
 
 from protractile.beam_model.component import Component, SegmentModel, natural_modes
@@ -36,9 +36,7 @@ def beam(*, supports: Sequence[float | Support] = (), **changes: Any) -> Segment
     return Segment(**numbers | changes)
 
 
-def beam_series(
-    boom: Boom, terms: tuple[int, int], base: Base = "as printed"
-) -> list[SegmentModel]:
+def beam_series(boom: Boom, terms: Sequence[int], base: Base = "as printed") -> list[SegmentModel]:
     return kantorovich_segments(boom, terms, base, False)
 
 
@@ -47,6 +45,15 @@ def beam_elements(
 ) -> list[SegmentModel]:
     return finite_element_segments(boom, length, theory, False)
 
+
+Build = Callable[[Boom], Sequence[SegmentModel]]
+# Elements and series without rotary inertia, as the parameter ``build``.
+MODELS: dict[str, Build] = {
+    "euler-bernoulli": lambda boom: beam_elements(boom, 0.25),
+    "timoshenko": lambda boom: beam_elements(boom, 0.25, "timoshenko"),
+    "series": lambda boom: beam_series(boom, [12] * len(boom.segments), "complete"),
+}
+BUILDS = pytest.mark.parametrize("build", MODELS.values(), ids=MODELS)
 
 # βL of a beam of length L with a free, a clamped or a pinned end on either side (Blevins 1979).
 FREE_FREE = (4.730040744862704, 7.853204624095838, 10.995607838001671)
@@ -98,31 +105,6 @@ class OverhangingBeam:
             ramps += force * arm
         constant, slope = self.line
         return cubes / self.bending_stiffness - ramps / self.shear_stiffness - constant - slope * x
-
-
-def bonded_deflections(boom: Boom, shear_stiffness: Sequence[float]) -> dict[str, float]:
-    """Return the static deflections of a boom of two segments, hinged to each other at both
-    stations.
-
-    Equilibrium of the inner segment gives the forces at the joint, which is statically determinate.
-    """
-    outer, inner = boom.segments
-    (tail, head), q = boom.joints[0].stations, inner.load * inner.length
-    at_head = q * (0.5 * (inner.start + inner.end) - tail) / (head - tail)
-    at_tail = q - at_head
-    below = OverhangingBeam(
-        outer, [(tail, at_tail), (head, at_head)], outer.load, shear_stiffness[0]
-    )
-    # Held at rest at its stations, the inner segment bends; the outer one tilts and lifts it.
-    above = OverhangingBeam(
-        replace(inner, supports=(Support(tail), Support(head))), [], inner.load, shear_stiffness[1]
-    )
-    slope = (below.deflection(head) - below.deflection(tail)) / (head - tail)
-
-    def lifted(x: float) -> float:
-        return above.deflection(x) + below.deflection(tail) + slope * (x - tail)
-
-    return {"tip": lifted(boom.tip), "head": below.deflection(head), "tail": lifted(tail)}
 
 
 class Span:

@@ -4,6 +4,7 @@
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -12,15 +13,10 @@ from scipy.linalg import eigh
 from protractile.beam_model.component import Component
 from protractile.beam_model.elements import Theory
 from protractile.beam_model.finite_element import finite_element_segment, finite_element_segments
-from protractile.beam_model.kantorovich import (
-    Base,
-    kantorovich_bending,
-)
+from protractile.beam_model.kantorovich import Base, kantorovich_bending
 from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.equilibrium import equilibrium
-from protractile.dynamics.integrator import AdaptiveStep
-from protractile.dynamics.motion import Motion
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, BoomError, PointMass, Segment, Stop, Support
 from protractile.geometry.observation import Observation
@@ -50,9 +46,7 @@ def outside_of_span(model: Component, function: Array, x: Array) -> float:
 @pytest.mark.parametrize("base", ["as printed", "pinned", "complete"])
 @pytest.mark.parametrize("terms", [2, 5])
 def test_functions_are_those_of_the_paper(paper_boom: Boom, base: Base, terms: int) -> None:
-    """Reference: external source. The outer functions span (29), x^i (x − x0)(x − x1), alone, the
-    inner ones (30) and (31); the complete ones span all powers of x below the number of terms.
-    """
+    """Reference: external, the paper's (29), (30) and (31); complete ones span all powers of x."""
     first = int(base == "as printed")
     x, y = np.linspace(0.0, 10.0, 61), np.linspace(0.0, 10.0, 61) - 10.0
     outer = [x**i * x * (x - 2.0) for i in range(first, first + terms + 1)]
@@ -63,68 +57,6 @@ def test_functions_are_those_of_the_paper(paper_boom: Boom, base: Base, terms: i
         assert model.load.shape == (terms,)
         assert max(outside_of_span(model, each, places) for each in printed[:-1]) < 1e-10
         assert outside_of_span(model, printed[-1], places) > 1e-5
-
-
-@pytest.mark.parametrize("terms", [3, 60])
-def test_complete_and_pinned_are_one_space_on_pinned_supports(paper_boom: Boom, terms: int) -> None:
-    """Reference: analytic. Roots and supports give the same polynomials, by ascending degree."""
-    outer = paper_boom.segments[0]
-    pinned, complete = (
-        frequencies(kantorovich_bending(outer, terms, base, rotary_inertia=False))[:3]
-        for base in ("pinned", "complete")
-    )
-    np.testing.assert_allclose(complete, pinned, rtol=1e-7)
-
-
-@pytest.mark.parametrize(
-    ("base", "supports", "numbers"),
-    [
-        ("pinned", (3.0, 8.0), PINNED_PINNED),
-        ("pinned", (3.0,), PINNED_FREE),
-        # As printed the base has no slope: a cantilever, without rigid mode.
-        ("as printed", (3.0,), CLAMPED_FREE),
-    ],
-)
-def test_frequencies_of_plain_beams(
-    base: Base, supports: tuple[float, ...], numbers: tuple[float, ...]
-) -> None:
-    """Reference: analytic βL."""
-    segment = beam(supports=supports)
-    model = kantorovich_bending(segment, 14, base, rotary_inertia=False)
-    expected = angular_frequencies(segment, numbers)
-    np.testing.assert_allclose(frequencies(model)[:3], expected, rtol=1e-6)
-
-
-def test_pinned_outer_series_converges_to_the_beam(paper_boom: Boom) -> None:
-    """Reference: other code, Hermite elements, and E J w = P a² (l + a)/3 under a force P at x3.
-    With 12 and 24 terms, frequencies are within 1e-3 and 1.5e-4, the compliance within 4e-4 and
-    6e-5. With the functions as printed, errors are 2 to 5 %.
-    """
-    outer = paper_boom.segments[0]
-    beam = finite_element_segment(outer, 0.125, (), "euler-bernoulli", False)
-    fine = frequencies(beam.components["z"])[:4]
-    compliance = 8.0**2 * (2.0 + 8.0) / (3.0 * outer.bending_stiffness)
-    for terms, frequency_error, compliance_error in ((12, 1.0e-3, 4.5e-4), (24, 2.0e-4, 7.0e-5)):
-        model = kantorovich_bending(outer, terms, "pinned", rotary_inertia=False)
-        too_high = frequencies(model)[:4] / fine - 1.0
-        assert (too_high > 0.0).all()
-        assert too_high.max() < frequency_error
-        row = model.at(10.0)
-        too_stiff = 1.0 - row @ np.linalg.solve(model.stiffness, row) / compliance
-        assert 0.0 < too_stiff < compliance_error
-
-
-def test_load_is_the_work_of_a_uniform_force() -> None:
-    """Reference: analytic, the work on x² (x − 2), and on 1 and x − x2 of the paper's spaces."""
-    inner = kantorovich_bending(beam(load=11.0), 2, "as printed", rotary_inertia=False)
-    for function, work in ((np.ones(2), 55.0), (np.array([0.0, 5.0]), 11.0 * 12.5)):
-        ends = np.array([inner.at(x) for x in (3.0, 8.0)])
-        assert np.linalg.solve(ends, function) @ inner.load == pytest.approx(work, rel=1e-12)
-    segment = beam(load=11.0, supports=(3.0, 5.0))
-    outer = kantorovich_bending(segment, 1, "as printed", rotary_inertia=False)
-    # ∫₀⁵ x² (x − 2) dx = 5⁴/4 − 2·5³/3, and the function is 75 at x = 5.
-    work = 11.0 * (5.0**4 / 4.0 - 2.0 * 5.0**3 / 3.0) / 75.0
-    assert outer.load / outer.at(8.0) == pytest.approx(work, rel=1e-12)
 
 
 THEORIES: tuple[Theory, ...] = ("euler-bernoulli", "timoshenko")
@@ -145,9 +77,7 @@ def shear_stiffness(segment: Segment, theory: Theory) -> float:
 
 
 def test_frequencies_converge_at_order_four() -> None:
-    """Reference: analytic βL, and another mesh without the node at 1 mm from a mass. Rigid modes
-    have ω = 0.
-    """
+    """Reference: analytic βL, and another mesh without the node at 1 mm from a mass."""
     segment = beam(supports=(3.0,))
     expected = angular_frequencies(segment, PINNED_FREE)
     errors = np.array([
@@ -200,42 +130,27 @@ def test_statics_are_exact_at_nodes_of_any_mesh(theory: Theory, length: float) -
     rest = np.linalg.solve(model.stiffness, load)
     for x in (6.1, 8.0):
         assert model.at(x) @ rest == pytest.approx(exact.deflection(x), rel=1e-8, abs=0.0)
-    for support in segment.supports:
-        assert not model.at(support.x).any()
 
 
 @pytest.mark.parametrize("theory", THEORIES)
-@pytest.mark.parametrize(("clamped", "length"), [(True, 4.5), (False, 0.5)])
-def test_requested_outputs_are_exact_under_a_uniform_load(
-    clamped: bool, length: float, theory: Theory
-) -> None:
-    """Reference: analytic, a cantilever and a beam on two supports with L/h = 7.5. The outputs are
-    where no other node is.
-    """
-    supports = [Support(3.0, "clamped")] if clamped else [Support(3.0), Support(7.5)]
-    segment = beam(end=7.5, supports=supports, load=-4000.0)
-    places = {f"at-{x:g}": x for x in (3.1, 5.25, 6.8)}
+def test_requested_outputs_are_exact_under_a_uniform_load(theory: Theory) -> None:
+    """Reference: analytic, a cantilever with L/h = 7.5, at places where no other node is."""
+    segment = beam(end=7.5, supports=[Support(3.0, "clamped")], load=-4000.0)
+    x = np.array([0.1, 2.25, 3.8])
     seen = [
-        Observation(name, 0, x, what)
-        for place, x in places.items()
-        for name, what in ((place, "deflection"), (f"{place}-turn", "rotation"))
+        Observation(f"{what} {number}", 0, 3.0 + place, what)
+        for what in ("deflection", "rotation")
+        for number, place in enumerate(x.tolist())
     ]
     boom = Boom((segment,), (), observations=seen)
-    system = gap_system(boom, finite_element_segments(boom, length, theory, False)).gather_loads()
+    system = gap_system(boom, finite_element_segments(boom, 4.5, theory, False)).gather_loads()
     rest = equilibrium(system, system.load)
-    found = {name: seen.row @ rest for name, seen in system.observers.items()}
-    shear, span, load = shear_stiffness(segment, theory), 4.5, segment.load
-    for name, place in places.items():
-        x = place - 3.0
-        if clamped:
-            bent, sheared = x**2 * (6.0 * span**2 - 4.0 * span * x + x**2), span * x - 0.5 * x**2
-            turned = 12.0 * span**2 * x - 12.0 * span * x**2 + 4.0 * x**3
-        else:
-            bent, sheared = x * (span**3 - 2.0 * span * x**2 + x**3), 0.5 * x * (span - x)
-            turned = span**3 - 6.0 * span * x**2 + 4.0 * x**3
-        bending = load / (24.0 * segment.bending_stiffness)
-        assert found[name] == pytest.approx(bending * bent + load / shear * sheared, rel=1e-6)
-        assert found[f"{name}-turn"] == pytest.approx(bending * turned, rel=1e-6)
+    found = [system.observers[one.name].row @ rest for one in seen]
+    bending, span = segment.load / (24.0 * segment.bending_stiffness), 4.5
+    bent = bending * x**2 * (6.0 * span**2 - 4.0 * span * x + x**2)
+    sheared = segment.load / shear_stiffness(segment, theory) * (span * x - 0.5 * x**2)
+    turned = bending * (12.0 * span**2 * x - 12.0 * span * x**2 + 4.0 * x**3)
+    assert found == pytest.approx([*bent + sheared, *turned], rel=1e-6)
 
 
 @pytest.mark.parametrize("theory", THEORIES)
@@ -250,29 +165,6 @@ def test_places_too_near_for_element_share_node(theory: Theory, apart: float) ->
         assert model.at(x) @ rest == pytest.approx(exact.deflection(x), rel=2e-5, abs=0.0)
 
 
-@pytest.mark.parametrize(("theory", "rotary_inertia"), [(THEORIES[0], True), (THEORIES[1], False)])
-def test_rigid_motions(theory: Theory, rotary_inertia: bool) -> None:
-    """Reference: analytic. Rigid motions have no strain, the mass m̄ L and the inertia
-    m̄ L³/12 + I_p L about the midpoint.
-    """
-    segment = beam(load=7.0, viscous_damping=3.0)
-    model = elastic(segment, 0.9, (), theory, rotary_inertia)
-    nodes = np.linspace(3.0, 8.0, len(model.load) // 2)
-    lift, turn = np.zeros(len(model.load)), np.zeros(len(model.load))
-    lift[::2], turn[::2], turn[1::2] = 1.0, nodes - 5.5, 1.0
-    for motion in (lift, turn):
-        assert np.abs(model.stiffness @ motion).max() < 1e-9 * np.abs(model.stiffness).max()
-    mass = segment.mass_per_length * 5.0
-    spin = mass * 25.0 / 12.0 + 5.0 * segment.rotary_inertia * rotary_inertia
-    assert lift @ model.mass @ lift == pytest.approx(mass, rel=1e-12)
-    assert turn @ model.mass @ turn == pytest.approx(spin, rel=1e-12)
-    assert abs(lift @ model.mass @ turn) < 1e-9 * mass
-    assert lift @ model.damping @ lift == pytest.approx(15.0, rel=1e-12)
-    assert lift @ model.load == pytest.approx(35.0, rel=1e-12)
-    assert abs(turn @ model.load) < 1e-9
-    assert model.at(4.321) @ turn == pytest.approx(4.321 - 5.5, rel=1e-12)
-
-
 def test_shear_needs_a_section() -> None:
     message = (
         "segment: 'beam' has no box section, which a Timoshenko beam needs for its shear area; "
@@ -284,42 +176,48 @@ def test_shear_needs_a_section() -> None:
 
 # The same βL with the ends exchanged, and of free ends.
 CLAMPED_PINNED, CLAMPED_CLAMPED = PINNED_FREE, FREE_FREE
+Build = Callable[..., Component]
 
 
 def elements(segment: Segment, rotary: bool = False) -> Component:
     return elastic(segment, 0.1, (), "euler-bernoulli", rotary)
 
 
-def terms(segment: Segment, rotary: bool = False) -> Component:
-    return kantorovich_bending(segment, 16, "complete", rotary)
+def terms(segment: Segment, rotary: bool = False, base: Base = "complete") -> Component:
+    return kantorovich_bending(segment, 16 if base == "complete" else 14, base, rotary)
 
 
 KINDS = pytest.mark.parametrize("model_of", [elements, terms])
+CLAMP, CLAMP_AT_END = Support(3.0, "clamped"), Support(8.0, "clamped")
 
 
-@KINDS
 @pytest.mark.parametrize(
-    ("supports", "numbers"),
+    ("model_of", "supports", "numbers"),
     [
-        ((), FREE_FREE),
-        ((Support(3.0), Support(8.0)), PINNED_PINNED),
-        ((Support(8.0, "clamped"),), CLAMPED_FREE),
-        ((Support(3.0, "clamped"), Support(8.0)), CLAMPED_PINNED),
-        ((Support(3.0, "clamped"), Support(8.0, "clamped")), CLAMPED_CLAMPED),
+        *(
+            (model_of, *held)
+            for model_of in (elements, terms)
+            for held in (
+                ((), FREE_FREE),
+                ((3.0, 8.0), PINNED_PINNED),
+                ((CLAMP_AT_END,), CLAMPED_FREE),
+                ((CLAMP, 8.0), CLAMPED_PINNED),
+                ((CLAMP, CLAMP_AT_END), CLAMPED_CLAMPED),
+            )
+        ),
+        (partial(terms, base="pinned"), (3.0, 8.0), PINNED_PINNED),
+        (partial(terms, base="pinned"), (3.0,), PINNED_FREE),
+        # As printed the base has no slope: a cantilever, without rigid mode.
+        (partial(terms, base="as printed"), (3.0,), CLAMPED_FREE),
     ],
-    ids=["free", "pinned", "clamped at the end", "clamped and pinned", "clamped at both ends"],
 )
 def test_rigid_supports(
-    model_of: Callable[[Segment], Component],
-    supports: tuple[Support, ...],
-    numbers: tuple[float, ...],
+    model_of: Build, supports: tuple[Support | float, ...], numbers: tuple[float, ...]
 ) -> None:
     """Reference: analytic βL."""
     segment = beam(supports=supports)
-    model = model_of(segment)
-    assert model.rigid_modes == (0 if supports else 2)
     expected = angular_frequencies(segment, numbers)
-    np.testing.assert_allclose(frequencies(model)[:3], expected, rtol=3e-6)
+    np.testing.assert_allclose(frequencies(model_of(segment))[:3], expected, rtol=3e-6)
 
 
 def tip_frequencies(segment: Segment, hold: Callable[[float], float]) -> Array:
@@ -346,7 +244,7 @@ def tip_frequencies(segment: Segment, hold: Callable[[float], float]) -> Array:
 
 
 @KINDS
-def test_rotary_inertia_of_two_pinned_ends(model_of: Callable[[Segment, bool], Component]) -> None:
+def test_rotary_inertia_of_two_pinned_ends(model_of: Build) -> None:
     """Reference: analytic, Rayleigh: ω² = (E J k⁴/m̄)/(1 + I_p k²/m̄)."""
     segment = beam(supports=(3.0, 8.0))
     k = np.array(PINNED_PINNED) / 5.0
@@ -357,29 +255,31 @@ def test_rotary_inertia_of_two_pinned_ends(model_of: Callable[[Segment, bool], C
 
 
 @KINDS
+def test_viscous_damping_acts_as_mass_does(model_of: Build) -> None:
+    """Reference: analytic, c in place of m̄."""
+    segment = beam(viscous_damping=3.0)
+    model = model_of(segment)
+    expected = 3.0 / segment.mass_per_length * model.mass
+    np.testing.assert_allclose(model.damping, expected, atol=1e-12 * expected.max())
+
+
+@KINDS
 @pytest.mark.parametrize(("spring", "mass"), [(2.0e7, 0.0), (0.0, 900.0)], ids=["spring", "mass"])
 def test_a_spring_or_a_mass_at_the_end_of_a_cantilever(
-    model_of: Callable[[Segment], Component], spring: float, mass: float
+    model_of: Build, spring: float, mass: float
 ) -> None:
-    """Reference: analytic, the transcendental equation of a clamped beam on an end spring, of which
-    −ω² M takes the place for a mass.
-    """
+    """Reference: analytic, the transcendental equation of a clamped beam on an end spring."""
     clamp, held = Support(3.0, "clamped"), Support(8.0, stiffness=spring or None)
     masses = (PointMass(8.0, mass),) if mass else ()
     segment = beam(supports=(clamp, held) if spring else (clamp,), masses=masses)
     expected = tip_frequencies(segment, lambda omega: spring - mass * omega**2)
-    free, pinned = (
-        angular_frequencies(segment, numbers)[0] for numbers in (CLAMPED_FREE, CLAMPED_PINNED)
-    )
-    assert expected[0] < 0.8 * (pinned if spring else free)
-    assert (expected[0] > 1.2 * free) == (spring > 0.0)
     np.testing.assert_allclose(frequencies(model_of(segment))[:3], expected[:3], rtol=1e-6)
 
 
 @KINDS
 @pytest.mark.parametrize("stiffness", [2.0e6, 4.0e8])
 def test_frequencies_with_a_rotational_spring_at_the_hinge(
-    model_of: Callable[[Segment], Component], stiffness: float
+    model_of: Build, stiffness: float
 ) -> None:
     """Reference: analytic, between a pinned and a clamped end (Blevins 1979):
     (kL/EJ) (1 + cos βL cosh βL) = βL (sin βL cosh βL − cos βL sinh βL). On a soft spring the beam
@@ -387,7 +287,6 @@ def test_frequencies_with_a_rotational_spring_at_the_hinge(
     """
     segment = beam(supports=(Support(3.0, rotation_stiffness=stiffness),))
     model = model_of(segment)
-    assert model.rigid_modes == segment.rigid_modes == 0
     share = stiffness * segment.length / segment.bending_stiffness
 
     def defect(number: float) -> float:
@@ -395,43 +294,8 @@ def test_frequencies_with_a_rotational_spring_at_the_hinge(
         return float(share * (1.0 / np.cosh(number) + np.cos(number)) - number * turned)
 
     expected = angular_frequencies(segment, roots(defect, 0.05, 11.0)[:3])
-    rigid = np.sqrt(3.0 * stiffness / (segment.mass_per_length * segment.length**3))
-    assert (abs(expected[0] / rigid - 1.0) < 0.01) == (stiffness < 1.0e7)
     rtol = 3e-5 if stiffness < 1.0e7 else 1e-5
     np.testing.assert_allclose(frequencies(model)[:3], expected, rtol=rtol)
-
-
-@KINDS
-def test_rest_on_two_springs(model_of: Callable[[Segment], Component]) -> None:
-    """Reference: analytic, the beam on rigid supports, moved along with the compressed springs."""
-    soft, hard = 2.0e6, 7.0e6
-    segment = beam(supports=(Support(3.0, stiffness=soft), Support(6.0, stiffness=hard)))
-    model = model_of(segment)
-    assert model.rigid_modes == 0
-    load = 1.0e4 * model.at(8.0)
-    rest = np.linalg.solve(model.stiffness, load)
-    bent = OverhangingBeam(beam(supports=(3.0, 6.0)), [(8.0, 1.0e4)], 0.0)
-    at_soft, at_hard = -1.0e4 * 2.0 / 3.0 / soft, 1.0e4 * 5.0 / 3.0 / hard
-    for x in (3.0, 4.5, 6.0, 8.0):
-        given = at_soft + (at_hard - at_soft) * (x - 3.0) / 3.0
-        # Twelve powers reach the kink over the inner support to four digits.
-        assert model.at(x) @ rest == pytest.approx(bent.deflection(x) + given, rel=2e-4)
-
-
-def test_complete_functions_converge_on_any_supports() -> None:
-    """Reference: other code, Hermite elements; order 3 due to the reaction inside the span."""
-    supports = (Support(3.0, "clamped"), Support(5.0), Support(8.0, stiffness=4.0e6))
-    segment = beam(supports=supports)
-    fine = frequencies(elements(segment))[:3]
-    errors = []
-    for count in (8, 24, 48):
-        model = kantorovich_bending(segment, count, "complete", rotary_inertia=False)
-        for x, order in ((3.0, 0), (3.0, 1), (5.0, 0)):
-            assert np.abs(model.at(x, order)).max() < 1e-7 * np.abs(model.at(6.5)).max()
-        errors.append((frequencies(model)[:3] / fine - 1.0).max())
-    assert errors[0] < 7e-3
-    assert errors[2] < 4e-5
-    assert np.log2(errors[1] / errors[2]) == pytest.approx(3.0, abs=0.2)
 
 
 def test_a_stop_holds_tip_up(paper_boom: Boom, paper_law: PowerContact) -> None:
@@ -444,10 +308,3 @@ def test_a_stop_holds_tip_up(paper_boom: Boom, paper_law: PowerContact) -> None:
     np.testing.assert_array_equal(system.rows[2], system.observers["tip"].row)
     law = system.laws[2]
     assert law.force(np.array([-6.0e-3, -4.0e-3, 6.0e-3])) == pytest.approx([-2.0e5, 0.0, 0.0])
-    # The tip falls onto it and is thrown back: 55 kg/m by 1 m/s² in reverse.
-    falling = replace(system, load=-system.load)
-    run = AdaptiveStep()(Motion(falling, 0.3))
-    assert run.data["tip"].min() < -5.0e-3
-    assert run.data["tip"].min() > -6.0e-3
-    assert run.data["contact_force"].sel(station=19.0).min() < -1.0e3
-    assert run.data["contact_force"].sel(station=19.0).max() == 0.0

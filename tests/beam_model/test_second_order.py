@@ -1,38 +1,23 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Beams under axial forces: unstable segments, both planes, bonded booms, static states."""
 
-from collections.abc import Callable, Sequence
-
 import numpy as np
 import pytest
 
 from protractile.beam_model.boom_modes import ContactPlace, StationCompliance, critical_factor
-from protractile.beam_model.component import Motion, SegmentModel
-from protractile.beam_model.finite_element import finite_element_segments
-from protractile.beam_model.kantorovich import kantorovich_segments, rigid_segment
+from protractile.beam_model.kantorovich import rigid_segment
 from protractile.beam_model.segment_model import gap_system
 from protractile.beam_model.static_model import estimate_critical_factor
 from protractile.beam_model.statics import static_state
 from protractile.dynamics.contact import PowerContact
-from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.excitation import Step
-from protractile.dynamics.second_order import buckling_factor
 from protractile.geometry.axial import Thrust, with_compression
-from protractile.geometry.boom import (
-    Boom,
-    Joint,
-    Pad,
-    PointMass,
-    Segment,
-    Support,
-)
-from protractile.geometry.box import BoxSection
+from protractile.geometry.boom import Boom, Joint, Pad, PointMass, Segment, Support
 from protractile.geometry.load import Load
 from protractile.geometry.profiles import octagon
+from tests.beam_model.exact import BUILDS, Build
 from tests.booms import ARM, FLY, STEEL
 from tests.touching import touching
-
-Build = Callable[[Boom], Sequence[SegmentModel]]
 
 MAST = (
     octagon(0.56, 0.56, 0.15, 0.007, 0.007, 0.007),
@@ -40,39 +25,25 @@ MAST = (
 )
 CLAMP = (Support(0.0, "clamped"),)
 LAW = PowerContact(1e9, 1.0).with_clearance(5e-3)
-BUILDS: dict[str, Build] = {
-    "elements": lambda boom: finite_element_segments(boom, 0.5, "euler-bernoulli", False),
-    "shear-flexible": lambda boom: finite_element_segments(boom, 0.25, "timoshenko", False),
-    "series": lambda boom: kantorovich_segments(boom, [14] * len(boom.segments), "complete", False),
-}
 
 
-@pytest.fixture(name="build", params=BUILDS.values(), ids=BUILDS)
-def _build(request: pytest.FixtureRequest) -> Build:
-    build: Build = request.param
-    return build
+def column(thrust: float, gravity: float = 0.0, **others: object) -> Boom:
+    """Return a clamped column of 10 m under a thrust in N and its weight."""
+    one = Segment.of_section("column", 0.0, 10.0, STEEL, ARM, supports=CLAMP, **others)
+    return Boom(with_compression([one], [], [Thrust(0, 10.0, thrust)], gravity), ())
 
 
-def column(section: BoxSection = ARM, length: float = 10.0, **others: object) -> Segment:
-    return Segment.of_section("column", 0.0, length, STEEL, section, **others)
-
-
-def alone(segment: Segment, thrust: float, gravity: float = 0.0) -> Boom:
-    return Boom(with_compression([segment], [], [Thrust(0, segment.end, thrust)], gravity), ())
-
-
-def telescope(thrust: float, bonded: bool = False, **changes: object) -> Boom:
+def telescope(thrust: float) -> Boom:
     """Return a clamped arm and a fly with an overlap of 2 m, with a force at its tip."""
     arm = Segment.of_section("arm", 0.0, 8.0, STEEL, ARM, supports=CLAMP)
     fly = Segment.of_section("fly", 6.0, 14.0, STEEL, FLY, load=-500.0)
-    joint = Joint(outer=0, inner=1, stations=(6.0, 8.0), play=0.01, bonded=bonded, **changes)
+    joint = Joint(0, 1, (6.0, 8.0), play=0.01)
     return Boom(with_compression((arm, fly), (joint,), [Thrust(1, 14.0, thrust)]), (joint,))
 
 
+@BUILDS
 def test_segment_held_by_contacts_only_tips_over(build: Build) -> None:
-    """Reference: analytic. A free beam that rotates by θ has the energies −P L θ²/2 and
-    m̄ L³ θ̇²/24. Shear and bending change the result by 1e-3.
-    """
+    """Reference: analytic, −P L θ²/2 and m̄ L³ θ̇²/24 of a rotation. Bending changes it by 1e-3."""
     thrust, boom = 5.0e3, telescope(5.0e3)
     fly = boom.segments[1]
     system = gap_system(touching(boom, LAW), build(boom))
@@ -86,10 +57,9 @@ def test_segment_held_by_contacts_only_tips_over(build: Build) -> None:
     np.testing.assert_allclose(rigid.omega2.min(), -thrust * 8.0 / inertia, rtol=1e-12)
 
 
+@BUILDS
 def test_soft_walls_at_pads_lower_the_buckling_load(build: Build) -> None:
-    """Reference: analytic, P = a²/(2 c L) for a rigid fly of length L on two springs of compliance
-    c. Bending reduces it by 0.3 %.
-    """
+    """Reference: analytic, P = a²/(2 c L) of a rigid fly on two springs; bending is 0.3 % less."""
     thrust, compliance = 5.0e3, 1.0e-4
     boom = telescope(thrust)
     models = build(boom)
@@ -136,36 +106,10 @@ def test_a_square_column_without_loads_across_it_buckles_as_in_a_plane() -> None
     assert spatial == pytest.approx(flat, rel=1e-6)
 
 
-def test_both_planes_buckle_each_by_its_own_stiffness(
-    build: Build, request: pytest.FixtureRequest
-) -> None:
-    """Reference: analytic, Euler's π² E J/4L² in each plane, with shear by Engesser."""
-    boom = alone(column(supports=CLAMP), 1.0e5)
-    (segment,), (model,) = boom.segments, build(boom)
-    assert segment.lateral is not None
-    planes: tuple[tuple[Motion, Segment], ...] = (("z", segment), ("y", segment.turned()))
-    for motion, bent in planes:
-        component = model.components[motion]
-        factor = buckling_factor(component.stiffness, component.geometric_stiffness)
-        euler = 0.25 * np.pi**2 * bent.bending_stiffness / 10.0**2
-        if request.node.callspec.id == "shear-flexible":
-            euler /= 1.0 + euler / (STEEL.shear_modulus * bent.section.shear_area)
-        assert factor == pytest.approx(euler / 1.0e5, rel=1e-4)
-
-
-def test_the_static_tip_grows_as_the_buckling_factor_says(build: Build) -> None:
-    """Reference: analytic, δ ≈ δ₀/(1 − 1/λ) within 2 % (Timoshenko and Gere 1961)."""
-    straight = gap_system(telescope(0.0).bonded, build(telescope(0.0)))
-    factor = critical_factor(telescope(1e4), build(telescope(1e4)))
-    boom = telescope(0.25 * factor * 1e4)
-    pressed = gap_system(boom.bonded, build(boom))
-    tips = [s.observers["tip"].row @ equilibrium(s, s.load) for s in (straight, pressed)]
-    assert tips[1] / tips[0] == pytest.approx(1.0 / (1.0 - 0.25), rel=0.02)
-
-
+@BUILDS
 def test_weights_of_point_masses_press(build: Build) -> None:
     """Reference: analytic, Euler's and Greenhill's cantilevers (Timoshenko and Gere 1961)."""
-    boom = alone(column(supports=CLAMP, masses=(PointMass(10.0, 5.0e4),)), 0.0, gravity=9.80665)
+    boom = column(0.0, gravity=9.80665, masses=(PointMass(10.0, 5.0e4),))
     (segment,) = boom.segments
     factor = critical_factor(boom, build(boom))
     of_mass = 5.0e4 * 9.80665 * 10.0**2 / (0.25 * np.pi**2 * segment.bending_stiffness)

@@ -8,34 +8,29 @@ import pytest
 
 import protractile as pt
 from protractile.beam_model.component import SegmentModel
-from protractile.beam_model.finite_element import (
-    Theory,
-    finite_element_segment,
-    finite_element_segments,
-)
+from protractile.beam_model.finite_element import finite_element_segment, finite_element_segments
 from protractile.beam_model.kantorovich import kantorovich_segment
 from protractile.beam_model.segment_model import gap_system
-from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.contact import DryFriction, PowerContact
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.gap_system import GapSystem
-from protractile.dynamics.integrator import FixedStep
-from protractile.dynamics.motion import Motion
-from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, Joint, Material, Segment, Support
+from protractile.geometry.boom import Boom, Joint, Support
 from protractile.geometry.load import Load
 from protractile.geometry.observation import Observation
 from studies.reference_models.statics import static_response
 from tests.beam_model.exact import (
-    OverhangingBeam,
+    STEEL,
     beam,
     beam_elements,
     beam_series,
-    bonded_deflections,
     bonded_frequencies,
     frequencies,
 )
 from tests.touching import in_space, touching
+
+LAW = PowerContact(stiffness=1.0e9, exponent=1.0).with_clearance(7.0e-3)
+LATERAL_LAW = PowerContact(stiffness=3.0e8, exponent=1.0).with_clearance(5.0e-3)
 
 
 def rest(system: GapSystem) -> dict[str, float]:
@@ -58,89 +53,40 @@ def test_bonded_boom_has_the_exact_frequencies(paper_boom: Boom) -> None:
     np.testing.assert_allclose(np.log2(errors[1][2:] / errors[2][2:]), 4.0, atol=0.1)
 
 
-@pytest.mark.parametrize("theory", ["euler-bernoulli", "timoshenko"])
-def test_bonded_boom_has_the_deflections_of_statics(paper_boom: Boom, theory: Theory) -> None:
-    """Reference: analytic. The joint is statically determinate."""
-    shear = [
-        segment.material.shear_modulus * segment.section.shear_area
-        if theory == "timoshenko" and segment.section is not None
-        else np.inf
-        for segment in paper_boom.segments
-    ]
-    expected = bonded_deflections(paper_boom, shear)
-    for length in (20.0, 0.7):
-        found = rest(gap_system(paper_boom.bonded, beam_elements(paper_boom, length, theory)))
-        assert found == pytest.approx(expected, rel=1e-7, abs=0.0)
-
-
 def test_bonded_series_converges_to_the_bonded_elements(
     paper_boom: Boom,
 ) -> None:
-    """Reference: other code, Hermite elements. Measured with twelve terms a segment: frequencies
-    within 6e-4, deflections within 5e-4.
-    """
+    """Reference: other code, Hermite elements, with twelve terms a segment."""
     beams = gap_system(paper_boom.bonded, beam_elements(paper_boom, 0.25))
     found = gap_system(paper_boom.bonded, beam_series(paper_boom, (12, 12), "complete"))
     np.testing.assert_allclose(found.frequencies[:4], beams.frequencies[:4], rtol=8e-4)
     assert rest(found) == pytest.approx(rest(beams), rel=7e-4, abs=0.0)
 
 
-def test_rows_read_the_inner_less_the_outer(paper_boom: Boom, paper_law: PowerContact) -> None:
-    """Reference: analytic, rigid translation of the inner segment and bending of the outer one."""
-    system = gap_system(touching(paper_boom, paper_law), beam_elements(paper_boom, 0.5))
-    assert system.rows.shape == (2, system.num_modes)
-    assert list(system.stations) == [9.0, 10.0]
-    assert list(system.station_of_row) == [0, 1]
-    assert list(system.laws) == [paper_law, paper_law]
-    rigid = system.omega2 == 0.0
-    # Raise and tilt so that the tail goes to 3 mm and the tip to 8 mm.
-    ends = np.array([system.observers[name].row[rigid] for name in ("tail", "tip")])
-    motion = np.zeros(system.num_modes)
-    motion[rigid] = np.linalg.solve(ends, [3.0e-3, 8.0e-3])
-    assert system.rows @ motion == pytest.approx([3.0e-3, 3.5e-3], rel=1e-9)
-    # The outer one alone under 1 kN at its head.
-    head = system.observers["head"].row
-    bent = np.divide(1000.0 * head, system.omega2, out=np.zeros_like(head), where=~rigid)
-    outer = paper_boom.segments[0]
-    exact = OverhangingBeam(outer, [(10.0, 1000.0)], 0.0)
-    expected = [-exact.deflection(9.0), -exact.deflection(10.0)]
-    assert system.rows @ bent == pytest.approx(expected, rel=1e-6, abs=0.0)
-
-
 def test_a_boom_of_three_has_the_rows_of_each_joint(paper_boom: Boom) -> None:
+    """Reference: by construction."""
     outer, middle = paper_boom.segments
     (joint,) = paper_boom.joints
     last = replace(middle, name="last", start=17.5, end=27.0, section=None)
     second = replace(joint, outer=1, inner=2, stations=(17.5, 19.0))
     boom = Boom((outer, middle, last), (joint, second))
     models = finite_element_segments(boom, 0.5, "euler-bernoulli", False)
-    laws = [
-        PowerContact(1e13, 2.0).with_clearance(7e-3),
-        PowerContact(1e10, 1.0).with_clearance(5e-3),
-    ]
-    system = gap_system(touching(boom, laws), models)
-    assert [law.terms[0].exponent for law in system.laws] == [2.0, 2.0, 1.0, 1.0]
+    system = gap_system(touching(boom, [LAW, LATERAL_LAW]), models)
+    assert list(system.laws) == [LAW, LAW, LATERAL_LAW, LATERAL_LAW]
     assert list(system.stations) == [9.0, 10.0, 17.5, 19.0]
     assert (system.omega2 == 0.0).sum() == 4
     # Bonded, both segments of a joint deflect alike at its stations.
-    seen = {(k, x): Observation(f"{k} {x}", k, x)
-            for station in boom.joints for x in station.stations
-            for k in (station.outer, station.inner)}  # fmt: skip
-    bonded = gap_system(replace(boom, observations=[*seen.values()]).bonded, models)
-    assert bonded.omega2.min() > 1.0
-    assert bonded.num_modes == system.num_modes - 4
-    position = static_response(bonded, bonded.load)
-    found = {at: bonded.observers[one.name].row @ position for at, one in seen.items()}
-    outer_ones = [found[0, 9.0], found[0, 10.0], found[1, 17.5], found[1, 19.0]]
-    inner_ones = [found[1, 9.0], found[1, 10.0], found[2, 17.5], found[2, 19.0]]
-    assert inner_ones == pytest.approx(outer_ones, rel=1e-6)
-    assert outer_ones == sorted(outer_ones)
+    seen = [(k, x) for one in boom.joints for x in one.stations for k in (one.outer, one.inner)]
+    observations = [Observation(f"{k} {x}", k, x) for k, x in seen]
+    bonded = gap_system(replace(boom, observations=observations).bonded, models)
+    deflections = rest(bonded)
+    found = [deflections[one.name] for one in observations]
+    assert found[1::2] == pytest.approx(found[::2], rel=1e-6)
+    assert found[::2] == sorted(found[::2])
 
 
 def test_bonded_halves_have_the_frequencies_of_the_whole(paper_boom: Boom) -> None:
-    """Reference: analytic. Equal motions of two half inner segments side by side, bonded at the
-    stations, are motions of the whole segment. Opposite motions are zero at the bonds.
-    """
+    """Reference: analytic. Equal motions of two halves, bonded at the stations, are the whole's."""
     (outer, inner), (joint,) = paper_boom.segments, paper_boom.joints
     half = replace(
         inner,
@@ -152,11 +98,9 @@ def test_bonded_halves_have_the_frequencies_of_the_whole(paper_boom: Boom) -> No
     bond = replace(joint, outer=1, inner=2, bonded=True)
     boom = Boom((outer, half, replace(half, name="leaf")), (joint, bond))
     models = finite_element_segments(boom, 1.0, "euler-bernoulli", False)
-    law = PowerContact(1e13, 2.0).with_clearance(7e-3)
-    whole = gap_system(touching(paper_boom, law), beam_elements(paper_boom, 1.0))
-    halves = gap_system(touching(boom, law), models)
+    whole = gap_system(touching(paper_boom, LAW), beam_elements(paper_boom, 1.0))
+    halves = gap_system(touching(boom, LAW), models)
     assert (list(halves.stations), len(halves.laws)) == ([9.0, 10.0], 2)
-    assert halves.num_modes == whole.num_modes + 22 - 2
     bonded = gap_system(paper_boom.bonded, beam_elements(paper_boom, 1.0))
     # A bonded model of three ties the play away as well.
     for found, expected in ((halves, whole), (gap_system(boom.bonded, models), bonded)):
@@ -164,32 +108,7 @@ def test_bonded_halves_have_the_frequencies_of_the_whole(paper_boom: Boom) -> No
             assert np.abs(found.frequencies - frequency).min() <= 1e-8 * frequency
 
 
-def test_ties_between_free_segments_leave_them_rigid(steel: Material) -> None:
-    """Reference: analytic. Two segments bonded at three places move as one body."""
-    one = Segment("one", 0.0, 6.0, steel, 50.0, 2.0e-4, 1.0)
-    two = replace(one, name="two", start=4.0, end=10.0)
-    three = replace(one, name="three", start=8.0, end=14.0, supports=(Support(12.0), Support(14.0)))
-    bonded = Joint(0, 1, (4.0, 5.0, 6.0), play=0.0, bonded=True)
-    loose = Joint(1, 2, (8.0, 10.0), play=0.002)
-    boom = Boom((one, two, three), (bonded, loose))
-    models = finite_element_segments(boom, 0.5, "euler-bernoulli", False)
-    system = gap_system(touching(boom, PowerContact(1e9, 1.0).with_clearance(1e-3)), models)
-    assert (system.omega2 == 0.0).sum() == 2
-    assert np.sort(system.omega2)[2] > 1.0
-    # Raised by 1 m at its tail and not tilted, "two" takes the end of "one" along.
-    rigid = system.omega2 == 0.0
-    ends = np.array([system.observers[name].row[rigid] for name in ("tail", "head-2")])
-    motion = np.zeros(system.num_modes)
-    motion[rigid] = np.linalg.solve(ends, [1.0, 1.0])
-    assert system.observers["head"].row @ motion == pytest.approx(1.0, rel=1e-9)
-
-
-STEEL = pt.Material(2.1e11, 0.3, 7850.0)
-
-
 SOFT = pt.Material(1.0e9, 0.3, 500.0)
-
-
 FORCE, LENGTH, OVERLAP = 1000.0, 10.0, 1.5
 
 
@@ -221,48 +140,23 @@ def test_a_station_near_the_end_of_a_segment(past: float, bonded: bool) -> None:
     right = FORCE * LENGTH**3 / (3.0 * stiffness) + moment * LENGTH**2 / stiffness
     right += moment * past * OVERLAP / (3.0 * soft)
     assert -tip == pytest.approx(right, rel=1e-4)
-    assert np.isfinite(system.omega2).all()
     assert (system.omega2 >= 0.0).all()
 
 
-LAW = PowerContact(stiffness=1.0e9, exponent=1.0).with_clearance(7.0e-3)
-
-
-LATERAL_LAW = PowerContact(stiffness=3.0e8, exponent=1.0).with_clearance(5.0e-3)
-
-
-def beams(
-    boom: Boom, length: float = 1.0, theory: Theory = "euler-bernoulli"
-) -> list[SegmentModel]:
-    return finite_element_segments(boom, length, theory, True)
-
-
-def pushed(boom: Boom, *loads: float) -> Boom:
-    """Return the boom with uniform loads along y in N/m."""
-    segments = []
-    for segment, load in zip(boom.segments, loads, strict=True):
-        segments.append(replace(segment, lateral=replace(segment.lateral, load=load)))
-    return replace(boom, segments=tuple(segments))
-
-
-def rolled(boom: Boom) -> Boom:
-    """Return the boom with y and z exchanged."""
-    joints = tuple(replace(j, play=j.lateral_play, lateral_play=j.play) for j in boom.joints)
-    return replace(boom, segments=tuple(s.turned() for s in boom.segments), joints=joints)
+def beams(boom: Boom) -> list[SegmentModel]:
+    return finite_element_segments(boom, 1.0, "euler-bernoulli", True)
 
 
 @pytest.mark.parametrize(
-    ("supports", "numbers", "rigid"),
+    ("supports", "numbers"),
     [
-        ((Support(3.0),), (0.5, 1.5, 2.5), 0),
-        ((), (1.0, 2.0, 3.0), 1),
-        ((Support(3.0, stiffness=1e6), Support(8.0, "clamped")), (1.0, 2.0, 3.0), 0),
+        ((Support(3.0),), (0.5, 1.5, 2.5)),
+        ((), (1.0, 2.0, 3.0)),
+        ((Support(3.0, stiffness=1e6), Support(8.0, "clamped")), (1.0, 2.0, 3.0)),
     ],
     ids=["held and free", "free", "held at both ends"],
 )
-def test_twisting_frequencies(
-    supports: tuple[Support, ...], numbers: tuple[float, ...], rigid: int
-) -> None:
+def test_twisting_frequencies(supports: tuple[Support, ...], numbers: tuple[float, ...]) -> None:
     """Reference: analytic, ω = κ π/L √(G J_t / I), κ = ½, 3/2, …, and (κπh/L)²/24 above."""
     segment = in_space(beam(supports=supports))
     lateral = segment.lateral
@@ -271,63 +165,28 @@ def test_twisting_frequencies(
     )
     expected = np.array(numbers) * np.pi / 5.0 * speed
     series = kantorovich_segment(segment, 14, "complete", False).components["twist"]
-    assert series.rigid_modes == rigid
     np.testing.assert_allclose(frequencies(series)[:3], expected, rtol=1e-9)
     errors = []
     for count in (20, 40):
         model = finite_element_segment(segment, 5.0 / count, (), "euler-bernoulli", False)
-        twist = model.components["twist"]
-        assert twist.rigid_modes == rigid
-        errors.append(frequencies(twist)[:3] / expected - 1.0)
+        errors.append(frequencies(model.components["twist"])[:3] / expected - 1.0)
     np.testing.assert_allclose(errors[1], (np.array(numbers) * np.pi / 40.0) ** 2 / 24.0, rtol=0.02)
     np.testing.assert_allclose(np.log2(errors[0] / errors[1]), 2.0, atol=0.03)
-
-
-def test_a_torque_twists_in_proportion_to_its_arm() -> None:
-    """Reference: analytic, T x/(G J_t) up to the torque and constant beyond; exact at nodes."""
-    segment = in_space(beam(supports=(Support(3.0),)))
-    stiffness = segment.material.shear_modulus * segment.lateral.torsion_constant
-    model = finite_element_segment(segment, 1.7, (5.5,), "timoshenko", False).components["twist"]
-    rest = np.linalg.solve(model.stiffness, 900.0 * model.at(5.5))
-    for x, arm in ((4.0, 1.0), (5.5, 2.5), (7.1, 2.5), (8.0, 2.5)):
-        assert model.at(x) @ rest == pytest.approx(900.0 * arm / stiffness, rel=1e-12)
-
-
-def test_pads_press_as_one_without_roll(spatial_boom: Boom) -> None:
-    """Reference: analytic. Under rigid translations of the inner segment along z and y, each
-    station has the force of its contact law.
-    """
-    system = gap_system(touching(spatial_boom, LAW, LATERAL_LAW), beams(spatial_boom))
-    up, aside = rigid_motion(system, ""), rigid_motion(system, "_lateral")
-    for height, shift in ((8.0e-3, 0.0), (-9.0e-3, 5.5e-3), (7.5e-3, -6.0e-3)):
-        gaps = system.rows @ (height * up + shift * aside)
-        forces = np.array([law.force(y) for law, y in zip(system.laws, gaps, strict=True)])
-        summed = np.bincount(system.station_of_row, forces)
-        expected = [LAW.force(np.array(height))] * 2 + [LATERAL_LAW.force(np.array(shift))] * 2
-        assert summed == pytest.approx(np.array(expected, dtype=float), rel=1e-9, abs=1e-3)
 
 
 def rigid_motion(system: GapSystem, suffix: str) -> Array:
     """Return the translation (num_modes,) of the inner segment by 1 m."""
     rigid = system.omega2 == 0.0
-    rows = np.array(
-        [
-            system.observers[name + s].row[rigid]
-            for name in ("tip", "tail")
-            for s in ("", "_lateral")
-        ]
-    )
+    names = [name + s for name in ("tip", "tail") for s in ("", "_lateral")]
+    rows = np.array([system.observers[name].row[rigid] for name in names])
     motion = np.zeros(system.num_modes)
-    wanted = [1.0, 0.0] if suffix == "" else [0.0, 1.0]
     # The smallest such motion does not roll.
-    motion[rigid] = np.linalg.pinv(rows) @ np.array(2 * wanted)
+    motion[rigid] = np.linalg.pinv(rows) @ [n.endswith("_lateral") == bool(suffix) for n in names]
     return motion
 
 
 def test_pads_resist_roll(spatial_boom: Boom) -> None:
-    """Reference: analytic. A segment in contact along z that rolls by θ stores k b² θ²/8 at each
-    station, with half the law at ± b/2. In contact along y it stores k h² θ²/8.
-    """
+    """Reference: analytic, k b² θ²/8 at each station with half the law at ± b/2; laterally k h²."""
     system = gap_system(touching(spatial_boom, LAW, LATERAL_LAW), beams(spatial_boom))
     inner = spatial_boom.segments[1]
     roll = np.zeros(system.num_modes)
@@ -354,64 +213,14 @@ def test_pads_resist_roll(spatial_boom: Boom) -> None:
         assert stored(pressed - theta * roll) - stored(pressed) == pytest.approx(more, rel=1e-6)
 
 
-NAMES = ("tip", "head", "tail")
-
-
-def agree(one: Trajectory, other: Trajectory, suffix: str, of_other: str) -> None:
-    """Check that outputs of two runs agree to 1e-9 of their range."""
-    for name in NAMES:
-        expected = one.data[f"{name}{suffix}"].values
-        error = np.abs(other.data[f"{name}{of_other}"].values - expected).max()
-        assert error < 1e-9 * np.ptp(expected), name
-
-
-def test_the_vertical_plane_is_flat_boom(spatial_boom: Boom) -> None:
-    """Reference: the flat model, to round-off, which contacts amplify to 3e-8 in 0.5 s."""
-    (joint,) = spatial_boom.joints
-    flat = replace(spatial_boom, joints=(replace(joint, lateral_play=None),))
-    runs = []
-    for boom, lateral in ((flat, ()), (spatial_boom, (LATERAL_LAW,))):
-        system = gap_system(touching(boom, LAW, lateral), beams(boom))
-        runs.append(FixedStep(1.0e-4)(Motion(system, 0.4)))
-    plane, space = runs
-    assert plane.data.attrs["contact_changes"] > 10
-    agree(plane, space, "", "")
-    for name in NAMES:
-        assert np.abs(space.data[f"{name}_lateral"].values).max() < 1e-15
-
-
-def test_a_boom_on_its_side_does_the_same_on_its_side(spatial_boom: Boom) -> None:
-    """Reference: analytic, the exchange of y and z. Contacts amplify round-off to 1e-13 until
-    0.16 s. Later steps with 16 friction rows may have several solutions.
-    """
-    (joint,) = spatial_boom.joints
-    boom = pushed(replace(spatial_boom, joints=(replace(joint, friction=0.2),)), 40.0, 30.0)
-    upright = gap_system(touching(boom, LAW, LATERAL_LAW), beams(boom))
-    side = rolled(boom)
-    lying = gap_system(touching(side, LATERAL_LAW, LAW), beams(side))
-    assert len(upright.frictions) == 16
-    one, other = (FixedStep(1.0e-4)(Motion(system, 0.15)) for system in (upright, lying))
-    assert one.data["friction_loss"].values[-1] > 0.1
-    assert one.data.attrs["contact_changes"] > 20
-    agree(one, other, "", "_lateral")
-    agree(one, other, "_lateral", "")
-
-
 def test_friction_rubs_in_the_plane_of_contact(paper_boom: Boom) -> None:
-    """Reference: external source, (28), with N at each station and the sliding u − w; analytic,
-    (10), (11): pads in contact along z rub along y, and conversely.
-    """
+    """Reference: external, (28), and analytic, (10), (11): contact along z rubs along y."""
     (joint,) = paper_boom.joints
     joint = replace(joint, friction=0.2, normal_forces=(4500.0, 5000.0))
     boom = replace(paper_boom, joints=(joint,))
     system = gap_system(touching(boom, LAW), beams(boom))
     np.testing.assert_array_equal(system.friction_rows, system.rows)
-    assert [
-        (f.coefficient, f.station, f.normal_force, f.normal_rows) for f in system.frictions
-    ] == [
-        (0.2, 0, 4500.0, ()),
-        (0.2, 1, 5000.0, ()),
-    ]
+    assert system.frictions == [DryFriction(0.2, 0, 4500.0), DryFriction(0.2, 1, 5000.0)]
     # In space the same forces are shared out to the pads.
     space = replace(
         boom,
@@ -419,9 +228,8 @@ def test_friction_rubs_in_the_plane_of_contact(paper_boom: Boom) -> None:
         joints=(replace(joint, lateral_play=0.01),),
     )
     system = gap_system(touching(space, LAW, LATERAL_LAW), beams(space))
-    assert [(friction.station, friction.normal_force) for friction in system.frictions] == [
-        (station, n) for station, n in enumerate((1125.0, 1250.0) * 2) for _ in "1234"
-    ]
+    shares = [(at, n) for at, n in enumerate((1125.0, 1250.0) * 2) for _ in "1234"]
+    assert [(one.station, one.normal_force) for one in system.frictions] == shares
     up, aside = rigid_motion(system, ""), rigid_motion(system, "_lateral")
     free = replace(joint, normal_forces=(), lateral_play=0.01)
     space = touching(replace(space, joints=(free,)), LAW, LATERAL_LAW)
@@ -437,14 +245,13 @@ def test_friction_rubs_in_the_plane_of_contact(paper_boom: Boom) -> None:
 
 def test_bonded_in_space_nothing_moves_between_the_segments(spatial_boom: Boom) -> None:
     """Reference: analytic, frequencies of the flat boom, the boom on its side, and twist."""
-    boom = pushed(spatial_boom, 5.0, 6.0)
+    boom = spatial_boom
     system = gap_system(boom.bonded, beams(boom))
-    assert (system.omega2 > 1.0).all()
-    assert not system.laws
     joint = Joint(0, 1, (9.0, 10.0), play=0.0)
     flat = Boom(boom.segments, (joint,))
     side = Boom(tuple(s.turned() for s in boom.segments), (joint,))
     bending = [gap_system(b.bonded, beams(b)).omega2 for b in (flat, side)]
     for omega2 in np.concatenate(bending):
         assert np.abs(system.omega2 / omega2 - 1.0).min() < 1e-9
-    assert system.num_modes == sum(b.size for b in bending) + 11 - 2 + 11 - 2
+    # And nine twists of each segment of ten elements.
+    assert system.num_modes == sum(b.size for b in bending) + 2 * 9

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Telescoping booms, also under axial forces: rows, statics, motion, energy balance."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from math import copysign, cos, pi, sin
 from typing import Any
@@ -13,8 +13,6 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.linalg import block_diag, eigh
 
 from protractile.beam_model.boom_modes import critical_factor
-from protractile.beam_model.component import SegmentModel
-from protractile.beam_model.elements import Theory
 from protractile.beam_model.finite_element import finite_element_segment, finite_element_segments
 from protractile.beam_model.kantorovich import kantorovich_segments
 from protractile.beam_model.segment_model import gap_system
@@ -29,6 +27,7 @@ from protractile.geometry.axial import Thrust, with_compression
 from protractile.geometry.boom import Boom, Joint, PointMass, Segment, Stop
 from protractile.geometry.joint import Carrier, Drive
 from protractile.geometry.segment import NO_COMPRESSION
+from tests.beam_model.exact import Build
 from tests.touching import touching
 
 LAW = PowerContact(1.0e6, 1.0).with_clearance(7.0e-3)
@@ -48,13 +47,9 @@ def telescope(boom: Boom, way: float, drive: Drive | None = None, **changes: Any
     return replace(boom, segments=(outer, inner), joints=(joint,))
 
 
-def elements(
-    boom: Boom,
-    length: float = 0.5,
-    theory: Theory = "euler-bernoulli",
-    rotary_inertia: bool = True,
-) -> GapSystem:
-    return gap_system(boom, finite_element_segments(boom, length, theory, rotary_inertia))
+def elements(boom: Boom, length: float = 0.5, rotary_inertia: bool = True) -> GapSystem:
+    models = finite_element_segments(boom, length, "euler-bernoulli", rotary_inertia)
+    return gap_system(boom, models)
 
 
 def tips(system: GapSystem) -> list[float]:
@@ -65,7 +60,6 @@ def tips(system: GapSystem) -> list[float]:
 
 # The longest element in m.
 LONGEST = 3.0
-
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(3)
 
 
@@ -208,8 +202,6 @@ def pressed(
     ropes = [Thrust(1, inner.end, 1.5e4)]
     return replace(free, segments=with_compression((outer, inner), free.joints, ropes, GRAVITY))
 
-
-Build = Callable[[Boom], list[SegmentModel]]
 
 BUILDS: dict[str, Build] = {
     "Euler-Bernoulli": lambda boom: finite_element_segments(boom, 0.5, "euler-bernoulli", True),

@@ -2,7 +2,8 @@
 """Case files with errors in values, keys, tables or bytes."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from functools import partial
 from random import Random
 
 from protractile.runs.case.schema import case_schema
@@ -23,27 +24,22 @@ OTHERS = (
 
 def any_value(random: Random, given: str) -> str:
     """Return a value in place of a given one: another size, sign or type, or infinite."""
-    kind = random.random()
-    if kind < 0.45:
-        try:
-            return repr(float(given) * 10.0 ** random.choice((-12, -6, -3, -1, 1, 3, 6, 12)))
-        except ValueError:
-            return random.choice(NUMBERS)
-    if kind < 0.65:
-        return random.choice(NUMBERS)
-    if kind < 0.9:
-        return random.choice(OTHERS)
-    if kind < 0.93:
-        return "9" * random.choice((18, 19, 20, 400, 5000))
-    if kind < 0.95:
-        return "0x" + "f" * random.choice((15, 17, 5000))
-    if kind < 0.97:
-        return f'"{"n" * random.choice((60, 61, 260, 5000))}"'
-    return f"[{', '.join([given] * random.choice((2, 3, 50, 300, 20_000)))}]"
+    try:
+        scaled = repr(float(given) * 10.0 ** random.choice((-12, -6, -3, -1, 1, 3, 6, 12)))
+    except ValueError:
+        scaled = random.choice(NUMBERS)
+    others = {
+        scaled: 45, random.choice(NUMBERS): 20, random.choice(OTHERS): 25,
+        "9" * random.choice((18, 19, 20, 400, 5000)): 3,
+        "0x" + "f" * random.choice((15, 17, 5000)): 2,
+        f'"{"n" * random.choice((60, 61, 260, 5000))}"': 2,
+        f"[{', '.join([given] * random.choice((2, 3, 50, 300, 20_000)))}]": 3,
+    }  # fmt: skip
+    return random.choices(list(others), list(others.values()))[0]
 
 
 _LINE = re.compile(r"^(?P<key>[a-z_]+) = (?P<value>.+?)(?P<rest>\s*#.*)?$", re.MULTILINE)
-_NUMBER = re.compile(r"-?\d+(?:\.\d*)?(?:e-?\d+)?")
+_NUMBER = re.compile(r"(?P<value>-?\d+(?:\.\d*)?(?:e-?\d+)?)")
 # Every key of every table that a case may have.
 _KEYS = sorted(
     {key for table in case_schema()["$defs"].values() for key in table.get("properties", ())}
@@ -53,7 +49,7 @@ _KEYS = sorted(
 def mutate(text: str, random: Random) -> str:
     """Return a case file with one error or a few."""
     for _ in range(random.choice((1, 1, 1, 2, 3))):
-        text = random.choices(_MUTATIONS, _WEIGHTS)[0](text, random)
+        text = random.choices(list(_MUTATIONS), list(_MUTATIONS.values()))[0](text, random)
     return text
 
 
@@ -70,21 +66,16 @@ def scaled(text: str, random: Random) -> str:
     return text
 
 
-def _other_value(text: str, random: Random) -> str:
-    line = random.choice(list(_LINE.finditer(text)) or [None])
-    if line is None:
+def _other(found: re.Pattern[str], text: str, random: Random) -> str:
+    """Return the file with another value, or another number, perhaps in a list or a table."""
+    given = random.choice(list(found.finditer(text)) or [None])
+    if given is None:
         return text
-    return (
-        text[: line.start("value")] + any_value(random, line["value"]) + text[line.end("value") :]
-    )
+    start, end = given.span("value")
+    return text[:start] + any_value(random, given["value"]) + text[end:]
 
 
-def _other_number(text: str, random: Random) -> str:
-    """Return the file with another number, perhaps in a list or a table."""
-    number = random.choice(list(_NUMBER.finditer(text)) or [None])
-    if number is None:
-        return text
-    return text[: number.start()] + any_value(random, number[0]) + text[number.end() :]
+_other_value, _other_number = partial(_other, _LINE), partial(_other, _NUMBER)
 
 
 def _without_a_line(text: str, random: Random) -> str:
@@ -106,15 +97,12 @@ def _one_more_table(text: str, random: Random) -> str:
 
 
 def _tables_again(text: str, random: Random) -> str:
-    """Return the file with a part of it repeated once or many times."""
+    """Return the file with its parts in another order, or one repeated once or many times."""
     parts = re.split(r"(?m)^(?=\[)", text)
-    i = random.randrange(len(parts))
-    return "".join([*parts[:i], parts[i] * random.choice((2, 3, 30, 3000)), *parts[i + 1 :]])
-
-
-def _tables_exchanged(text: str, random: Random) -> str:
-    parts = re.split(r"(?m)^(?=\[)", text)
-    random.shuffle(parts)
+    if random.random() < 0.33:
+        random.shuffle(parts)
+    else:
+        parts[random.randrange(len(parts))] *= random.choice((2, 3, 30, 3000))
     return "".join(parts)
 
 
@@ -132,8 +120,7 @@ def _cut(text: str, random: Random) -> str:
     return text[: random.randrange(len(text) + 1)]
 
 
-_MUTATIONS: tuple[Callable[[str, Random], str], ...] = (
-    _other_value, _other_number, _without_a_line, _one_more_key, _one_more_table, _tables_again,
-    _tables_exchanged, _other_letters, _cut,
-)  # fmt: skip
-_WEIGHTS = (8, 8, 1, 3, 6, 1, 0.5, 1, 0.5)
+_MUTATIONS: Mapping[Callable[[str, Random], str], float] = {
+    _other_value: 8, _other_number: 8, _without_a_line: 1, _one_more_key: 3, _one_more_table: 6,
+    _tables_again: 1.5, _other_letters: 1, _cut: 0.5,
+}  # fmt: skip

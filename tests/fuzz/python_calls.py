@@ -6,7 +6,7 @@
 
 import sys
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from datetime import date
 from functools import partial
 from random import Random
@@ -76,34 +76,36 @@ def _boom(random: Random) -> object:
         pt.BoxSection(**drawn(height=0.40, width=0.30, flange=0.008, web=0.006)),
         pt.hexagon(**drawn(height=0.36, width=0.26, flat=0.1, top=0.006, bottom=0.006, web=0.006)),
     )
-    support = pt.Support(**drawn(x=0.0, kind="clamped"))
-    masses = (pt.PointMass(**drawn(x=12.0, mass=50.0)),)
     arm = pt.Segment.of_section(
         **drawn(name="arm", start=0.0, end=8.4, material=steel, section=boxes[0]),
-        supports=(support,),
+        supports=(pt.Support(**drawn(x=0.0, kind="clamped")),),
     )
     fly = pt.Segment.of_section(
         **drawn(name="fly", start=6.0, end=14.0, material=steel, section=boxes[1], load=-500.0),
-        masses=masses,
+        masses=(pt.PointMass(**drawn(x=12.0, mass=50.0)),),
     )
     law = pt.PowerContact(**drawn(stiffness=1e9, exponent=1.2, damping=0.0))
     stations = random.choice(((6.5, 7.5), (6.6, 7.4), ("tail", "head"), (6.5,), (), 6.5))
     joint = pt.Joint(**drawn(outer="arm", inner="fly", stations=stations, play=0.01, contact=law))
-    history = random.choice(
-        (
-            lambda: pt.Step(),
-            lambda: pt.Ramp(**drawn(duration=0.01)),
-            lambda: pt.Sine(**drawn(frequency=2.0, phase=0.1)),
-            lambda: pt.PiecewiseLinear(**drawn(times=[0.0, 0.1], values=[0.0, 1.0])),
-            lambda: pt.SCurve(**drawn(travel=1.0, duration=0.1)),
-        )
-    )()
-    load = drawn(segment="fly", direction="z", magnitude=-100.0, x=13.0, history=history)
-    cylinder = pt.Cylinder(**drawn(segment="arm", x=2.0, ground=(0.5, -1.0), stiffness=1e7))
-    stop = pt.Stop(**drawn(segment="fly", x=13.0, play=0.1, contact=law))
-    more = random.choice(
-        ({}, {"loads": [pt.Load(**load)]}, {"cylinders": [cylinder]}, {"stops": [stop]})
-    )
+    histories: Mapping[Any, Mapping[str, Any]] = {
+        pt.Step: {}, pt.Ramp: {"duration": 0.01}, pt.Sine: {"frequency": 2.0, "phase": 0.1},
+        pt.PiecewiseLinear: {"times": [0.0, 0.1], "values": [0.0, 1.0]},
+        pt.SCurve: {"travel": 1.0, "duration": 0.1},
+    }  # fmt: skip
+    history, numbers = random.choice(list(histories.items()))
+    load = {"direction": "z", "magnitude": -100.0, "history": history(**drawn(**numbers))}
+    parts: Mapping[str, tuple[Any, Mapping[str, Any]]] = {
+        "loads": (pt.Load, {"segment": "fly", "x": 13.0, **load}),
+        "cylinders": (
+            pt.Cylinder, {"segment": "arm", "x": 2.0, "ground": (0.5, -1.0), "stiffness": 1e7},
+        ),
+        "stops": (pt.Stop, {"segment": "fly", "x": 13.0, "play": 0.1, "contact": law}),
+    }  # fmt: skip
+    more = {
+        name: [part(**drawn(**keys))]
+        for name, (part, keys) in parts.items()
+        if random.random() < 0.3
+    }
     boom = pt.Boom(**drawn(segments=[arm, fly], joints=[joint], **more))
     if random.random() < 0.3:
         boom = pt.with_weight(boom, **drawn(angle=30.0, acceleration=9.81))
@@ -112,13 +114,9 @@ def _boom(random: Random) -> object:
         pt.Kantorovich(boom, **drawn(terms=[4, 4], base="complete")),
         pt.Rigid(boom),
     )
-    step = random.choice((0.001, 0.002))
+    given = {"at_rest": False, "damping_ratio": 0.02, "tolerance": 0.002}
     one, other = (
-        model.simulate(
-            0.02,
-            step,
-            **drawn(at_rest=False, damping_ratio=0.02, tolerance=0.002),
-        )
+        model.simulate(0.02, 0.001, **drawn(**given))
         for model in random.choices(models, (3, 2, 1), k=2)
     )
     return one.compare(other, **drawn(name="tip", until=0.01))

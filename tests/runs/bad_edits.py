@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Errors in a case file: text of the coarse case, its replacement, and the expected message."""
 
-from tests.runs.case_texts import CONTACT, FROM_EXPONENT, adding, replacing
+from tests.runs.case_texts import CONTACT, adding, replacing
 
 # Keys and types, and missing keys.
 BOX = "section = { height = 0.49, width = 0.33, flange = 0.0065, web = 0.0065 }"
@@ -11,7 +11,6 @@ FORMS = [
         "colour = 1":
             "time.colour: unknown key; known ones are duration, output_step, step, tolerance",
         "duration = 0.6\nangle = 45.0": "time.angle: unknown key; use gravity.angle",
-        "step_output = 0.6": "time.step_output: unknown key; the nearest known one is output_step",
         "duration = true": "time.duration: must be a number, got true",
     }),
     ("terms = [2, 3]", "terms = [2, 2.5]",
@@ -29,15 +28,13 @@ FORMS = [
             "'octagon' or 'U', got 'star'",
         "head_section = { height = 0.4, width = 0.3, flange = 0.0065, web = 0.0065 }":
             "segment[1].section: missing; a segment with a head_section tapers from it",
-        "section = { shape = 'unequal box', height = 0.5, width = 0.3, top = 0.01, web = 0.01 }":
-            "segment[1].section.bottom: missing; it is the thickness of the lower flange in m",
     }),
-    ("supports = [0.0, 2.0]", 'supports = [0.0, "2 m"]',
+    ("supports = [0.0, 2.0]", 'supports = [0.0, "near"]',
      "segment[1].supports[2].x: must be a number of m, 'tail', 'head' or a distance in m from "
-     "one of them such as { tail = 0.2 }, got '2 m'"),
+     "one of them such as { tail = 0.2 }, got 'near'"),
     ("[material]\nyoungs_modulus = 2.1e11\npoissons_ratio = 0.3\ndensity = 7850.0\n", "",
      "material: missing, and 'outer' has none of its own; it is the table of elastic constants and "
-     "density, for all segments without a material of their own"),
+     "density, of segments without a material of their own"),
     ("mass_per_length = 55.07\n", "",
      "segment[2].mass_per_length: missing; it is the mass per length in kg/m; follows from the "
      "section unless given"),
@@ -46,10 +43,6 @@ FORMS = [
      "or theory = 'euler-bernoulli' in the model"),
     ("bonded = true", "bonded = 1",
      "model[5].bonded: must be true or false, got 1"),
-    *replacing("title = \"The paper's boom, coarse and short\"", {
-        'title = "red \\u001b[31m"':
-            "title: must be a line of printable characters, got 'red \\x1b[31m'",
-    }),
     *replacing("span = [9.0, 19.0]", {
         "span = [9.0, 14.0, 19.0]":
             "segment[2].span: must be a list of two numbers, got [9.0, 14.0, 19.0]",
@@ -89,40 +82,17 @@ FORMS = [
 # Numbers and booms.
 NUMBERS = [
     *replacing("supports = [0.0, 2.0]", {
-        'supports = [0.0, { x = 2.0, kind = "welded" }]':
-            "segment[1].supports[2].kind: must be 'pinned', 'hinged' or 'clamped', got 'welded'",
         'supports = [0.0, { x = 2.0, kind = "clamped" }]':
             "model[1].base: 'outer' has clamped or elastic supports, for which the functions "
             "'as printed' have no form; use base = 'complete'",
     }),
-    *adding("load = 55.07", {
-        "lateral_load = 20.0":
-            "segment[2].lateral_load: the boom is flat, and nothing moves along 'y'; give the "
-            "joints lateral_play",
-        "viscous_damping = 10.0":
-            "segment[2].viscous_damping: the shell 'shell' has none; leave it out, or run beams "
-            "alone",
-    }),
-    *replacing("load = 55.07\n\n[[joint]]", {
-        'load = 55.07\n\n[[load]]\nsegment = "jib"\nmagnitude = 1.0\n\n[[joint]]':
-            "load[1].segment: 'jib' is no segment; give 'outer' or 'inner'",
-        'load = 55.07\n\n[[stop]]\nsegment = "inner"\nx = 3.0\nplay = 0.1\nstiffness = '
-        "1e7\n\n[[joint]]":
-            "stop[1].x: 3 m lies outside 'inner'; it must be between 9 and 19 m",
-    }),
+    ("load = 55.07", "load = 55.07\nviscous_damping = 10.0",
+     "segment[2].viscous_damping: the shell 'shell' has none; leave it out, or run beams alone"),
     ("[[joint]]",
      '[[cylinder]]\nsegment = "outer"\nx = 4.0\nground = [1.0, -2.0]\nstiffness = 1e7\n\n[[joint]]',
      "model[1].base: 'outer' has a cylinder, for which the functions 'as printed' have no form; "
      "use base = 'complete'"),
-    ("[[joint]]", "[limits]\ntip_lateral = 0.1\n\n[[joint]]",
-     "limits.tip_lateral: the boom is flat, and nothing moves along 'y'; give the joints "
-     "lateral_play"),
-    ("[[joint]]", "[slew]\ntravel = 60.0\ntime = 9.0\n\n[[joint]]",
-     "slew: the boom is flat, and nothing moves along 'y'; give the joints lateral_play"),
-    ("stiffness = 1e13", "stiffness = 0.0",
-     "joint[1].stiffness: must be a number greater than 0, got 0.0"),
     *replacing("play = 0.014", {
-        "play = -0.014": "joint[1].play: must be a number not less than 0, got -0.014",
         "play = 0.028":
             "segment[2].section: no uniform-wall box with A = 0.00701529 m² and J = 0.00021829 "
             "m⁴ closes a clearance of 0.014 m in a room of 0.482373 m x 0.319415 m; give the "
@@ -131,28 +101,16 @@ NUMBERS = [
             "segment: numbers out of proportion (Numerical result out of range); give them in "
             "SI units",
     }),
-    *replacing("span = [9.0, 19.0]", {
-        "span = [19.0, 9.0]":
-            "segment[2].span: must run from a smaller to a larger x, got [19, 9] m",
-        "span = [9.9999999, 19.0]":
-            "joint[1]: 'inner' overlaps 'outer' by 1e-07 m; it must be at least 0.0009 m, usual "
-            "is a tenth of its length",
-    }),
+    ("span = [9.0, 19.0]", "span = [9.9999999, 19.0]",
+     "joint[1]: 'inner' overlaps 'outer' by 1e-07 m; it must be at least 0.0009 m, usual is a "
+     "tenth of its length"),
     ("youngs_modulus = 2.1e11", "youngs_modulus = nan",
      "material.youngs_modulus: must be a finite number, got nan"),
-    *replacing("terms = [2, 3]", {
-        "terms = [2, 3, 1]":
-            "model[2].terms: must have one number for each of the 2 segments, got [2, 3, 1]",
-        "terms = [2, 61]":
-            "model[2].terms: must not be above 60, where the polynomials lose their digits, got "
-            "[2, 61]; use finite elements",
-    }),
-    ('name = "kantorovich-5"', 'name = "kantorovich-4"',
-     "model[2].name: 'kantorovich-4' is the name of model[1] already; give each its own"),
+    ("terms = [2, 3]", "terms = [2, 61]",
+     "model[2].terms: must not be above 60, where the polynomials lose their digits, got [2, 61]; "
+     "use finite elements"),
     ('name = "kantorovich-5"', 'name = "beam estimate"',
      "model[2].name: 'beam estimate' is a model in all results; give another"),
-    ('name = "inner"', 'name = "outer"',
-     "segment[2].name: 'outer' is the name of segment[1] already; give each its own"),
     ('inner = "inner"', 'inner = "innner"',
      "joint[1].inner: 'innner' is no segment; give 'outer' or 'inner'"),
     ("height_to_width = 1.5",
@@ -175,8 +133,6 @@ NUMBERS = [
      "model[6].modes: must be a whole number above 0, or 'auto', got 'many'"),
     ('contact_tolerance = "any"', "contact_tolerance = 1e-4",
      "model[6].contact_tolerance: must be a number from 0.001 to below 1, or 'any', got 0.0001"),
-    ("mesh_size = 0.25", "mesh_size = 1e-9",
-     "model[6].mesh_size: 1e-09 m makes more than 2e+07 triangles; it must be at least 0.00176 m"),
     ("[[model]]",
      '[[joint]]\nouter = "inner"\ninner = "outer"\nstations = [9.5]\nplay = 0.014\nstiffness = '
      "1e13\n\n[[model]]",
@@ -221,11 +177,6 @@ CONTACTS = [
         "pads = [{ side = 'left', length = 0.1, width = 0.06, thickness = 0.02 }]":
             "joint[1].pads[1].side: the boom is flat, and nothing presses laterally; leave "
             "the pad out, or give the joints lateral_play",
-        "pads = [{ side = 'above', length = 0.1, width = 0.06, thickness = 0.02 }, { side = "
-        "'above', length = 0.1, width = 0.06, thickness = 0.02, offset = 0.04 }, { side = "
-        "'below', length = 0.1, width = 0.06, thickness = 0.02 }]":
-            "joint[1].pads: two lie on one another above, 0.04 m from the corner; give the "
-            "outer one a width of at most 0.04 m",
         "pad = { length = 0.1, width = 0.06 }\npads = [{ side = 'below', length = 0.1, width = "
         "0.06, thickness = 0.02 }]":
             "joint[1].pad: pads is given; leave one of them out",
@@ -241,34 +192,25 @@ CONTACTS = [
     ('contact_line = "near webs"', 'contact_line = "surface"\nsurface_points = [100, 4]',
      "model[6].surface_points: 100 times 4 points on half a wall are more than 256, which a "
      "reduced model can bear; give fewer"),
-    (FROM_EXPONENT,
-     FROM_EXPONENT.replace(
-         "exponent = 2.0\n", "exponent = 2.0\npad = { length = 0.1, width = 0.06 }\n"
-     ).replace('"near webs"', '"across"'),
-     "model[6].contact_line: 'across' leaves no place to the pads of joint[1]; give 'near "
-     "webs', or leave pad out"),
-    (FROM_EXPONENT,
-     FROM_EXPONENT.replace("exponent = 2.0\n", "exponent = 2.0\nlateral_play = 0.01\n").replace(
-         '"near webs"', '"across"'
-     ),
-     "model[6].contact_line: 'across' is for a flat boom; in space the segments touch 'near "
-     "webs' or by 'surface'"),
-    (FROM_EXPONENT,
-     FROM_EXPONENT.replace(
-         "exponent",
-         "lateral_play = 0.01\nlateral_stiffness = 1e11\nlateral_exponent = 1.5\nexponent",
-         1,
-     )
-     .replace('"near webs"', '"surface"\nsurface_stiffness = 1e14')
-     .replace(CONTACT, "", 3),
-     "model[6].surface_stiffness: its unit depends on the exponent, and the joints have 1.5 and "
-     "2; leave it out, or give the model its own contact"),
-    ("stiffness = 1e13\n" + FROM_EXPONENT,
-     FROM_EXPONENT.replace("exponent = 2.0", "force_table = [[1e-3, 1e4], [2e-3, 4e4]]")
-     .replace('"near webs"', '"surface"\nsurface_stiffness = 1e14')
-     .replace(CONTACT, "", 3),
-     "model[6].surface_stiffness: is one number, and a force_table has as many as lines; leave "
-     "it out, or give the model its own contact"),
+]  # fmt: skip
+
+# The same at the shell's contact, by several replacements.
+LAW = "stiffness = 1e13\nexponent = 2.0"
+ACROSS = (('"near webs"', '"across"'),)
+SURFACE = (('"near webs"', '"surface"\nsurface_stiffness = 1e14'), *3 * [(CONTACT, "")])
+OF_SHELLS = [
+    (f"{LAW}\npad = {{ length = 0.1, width = 0.06 }}", ACROSS,
+     "contact_line: 'across' leaves no place to the pads of joint[1]; give 'near webs', or leave "
+     "pad out"),
+    (f"{LAW}\nlateral_play = 0.01", ACROSS,
+     "contact_line: 'across' is for a flat boom; in space the segments touch 'near webs' or by "
+     "'surface'"),
+    (f"{LAW}\nlateral_play = 0.01\nlateral_stiffness = 1e11\nlateral_exponent = 1.5", SURFACE,
+     "surface_stiffness: its unit depends on the exponent, and the joints have 1.5 and 2; leave it "
+     "out, or give the model its own contact"),
+    ("force_table = [[1e-3, 1e4], [2e-3, 4e4]]", SURFACE,
+     "surface_stiffness: is one number, and a force_table has as many as lines; leave it out, or "
+     "give the model its own contact"),
 ]  # fmt: skip
 
 # Beams that nothing can calibrate.
@@ -326,4 +268,8 @@ STIFFENERS = [
     }),
 ]  # fmt: skip
 
-BAD_EDITS = [*FORMS, *NUMBERS, *CALIBRATIONS, *CONTACTS, *STIFFENERS]
+ONE_EDIT = FORMS + NUMBERS + CALIBRATIONS + CONTACTS + STIFFENERS
+BAD_EDITS = [
+    *((((good, bad),), line) for good, bad, line in ONE_EDIT),
+    *((((LAW, law), *edits), f"model[6].{line}") for law, edits, line in OF_SHELLS),
+]

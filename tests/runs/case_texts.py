@@ -15,8 +15,6 @@ from protractile.runs.process.bad_input import BadInput
 
 COARSE = (CASES / "coarse.toml").read_text(encoding="utf-8")
 CONTACT = next(line for line in COARSE.splitlines() if line.startswith("contact = "))
-# From the law of its joint on, for slips in several lines of it.
-FROM_EXPONENT = COARSE[COARSE.index("exponent = 2.0") :]
 STEEL = """
 [material]
 youngs_modulus = 2.1e11
@@ -155,18 +153,10 @@ time = {{ duration = 1.0 }}
 gravity = {{ angle = 40.0 }}
 start = {{ state = "equilibrium" }}
 payload = {{ mass = 150.0 }}
+cylinder = [{{ segment = "s0", x = 2.4, depth = 0.4, ground = [0.7, -1.6], stiffness = 5e8 }}]
+load_case = [{{ name = "light", payload = 100.0 }}]
 {STEEL}yield_strength = 355e6
 {elements("beam")}
-[[load_case]]
-name = "light"
-payload = 100.0
-
-[[cylinder]]
-segment = "s0"
-x = 2.4
-depth = 0.4
-ground = [0.7, -1.6]
-stiffness = 5e8
 """
     pads = "pad = { length = 0.15, width = 0.05 }\nstiffness = 2e8"
     for i in range(segments):
@@ -177,10 +167,9 @@ stiffness = 5e8
             span = start + 0.1, start + overlap - 0.1
             text += joint(f"s{i}", f"s{i - 1}", 0.002, span, pads)
     for k in range(loads):
-        i = k % segments
-        x = i * (length - overlap) + 1.0 + 0.1 * (k // segments)
-        keys = {"segment": f"s{i}", "x": x, "magnitude": -20.0 - k, "ramp": 0.1 + 0.02 * k}
-        text += table("[[load]]", **keys)
+        i, row = k % segments, k // segments
+        keys = {"x": i * (length - overlap) + 1.0 + 0.1 * row, "magnitude": -20.0 - k}
+        text += table("[[load]]", segment=f"s{i}", ramp=0.1 + 0.02 * k, **keys)
     for k in range(combinations):
         factors = {"dead": 1.0 + 0.03 * k, "payload": 1.0 + 0.05 * k}
         text += table("[[combination]]", name=f"c{k}", factors=factors)

@@ -79,14 +79,10 @@ def moving_trajectories() -> xr.Dataset:
             "tip": (("model", "time"), (0.17 * swing - CLEARANCE)[None]),
             "contact_force": (per_station, force[None]),
             "contact_force_peak": (per_station, peak[None]),
-        },
-        coords={
-            "model": ["shell"],
-            "time": TIME,
-            "station": [9.0, 10.0],
             "direction": ("station", ["z", "z"]),
         },
-    )
+        coords={"model": ["shell"], "time": TIME, "station": [9.0, 10.0]},
+    ).set_coords("direction")
 
 
 def moving_scene(case: Case = CASE, state: float = 1.0, **motion: Array) -> Scene:

@@ -146,12 +146,9 @@ FIRST_CONTACT = 0.12
 PERIOD = 1.1
 # First tip peaks in m, of about the heights that the models have.
 PEAKS = {
-    "kantorovich-4": 0.169,
-    "kantorovich-5": 0.171,
-    "beam-fe": 0.184,
-    "beam-fe-bonded": 0.019,
+    "kantorovich-4": 0.169, "kantorovich-5": 0.171, "beam-fe": 0.184, "beam-fe-bonded": 0.019,
     "shell": 0.186,
-}
+}  # fmt: skip
 
 
 def paper() -> Case:
@@ -172,15 +169,13 @@ def curves(duration: float = 10.0, **heights: float) -> dict[str, dict[str, np.n
     Up to the first contact, models with play are equal to ``kantorovich-5``. A head is a tenth of
     its tip, plus 0.3 of the difference of the model's own tip from it.
     """
-    peaks = PEAKS | {name.replace("_", "-"): height for name, height in heights.items()}
-    touching = np.arange(round(duration * 1000) + 1) / 1000 > FIRST_CONTACT
-    common = swing(0.171, duration)
-    drawn = {}
-    for name, peak in peaks.items():
-        own = swing(peak, duration)
-        tip = own if name == "beam-fe-bonded" else common + touching * (own - common)
-        head = 0.1 * common + 0.3 * (tip - common)
-        drawn[name] = {"tip": tip, "head": head}
+    common, drawn = swing(0.171, duration), {}
+    touching = np.arange(common.size) / 1000 > FIRST_CONTACT
+    for name, peak in PEAKS.items():
+        tip = swing(heights.get(name.replace("-", "_"), peak), duration)
+        if name != "beam-fe-bonded":
+            tip = common + touching * (tip - common)
+        drawn[name] = {"tip": tip, "head": 0.1 * common + 0.3 * (tip - common)}
     return drawn
 
 
@@ -191,26 +186,19 @@ def verdicts(
     ensembles: xr.Dataset | None = None,
 ) -> dict[str, Verdict]:
     """Judge curves; ``summary`` replaces entries of the models' summaries."""
-    size = next(iter(motion.values()))["tip"].size
+    places = ("tip", "head")
     data = xr.Dataset(
-        {
-            place: (("model", "time"), np.array([both[place] for both in motion.values()]))
-            for place in ("tip", "head")
-        },
-        coords={"model": list(motion), "time": np.arange(size) / 1000},
+        {x: (("model", "time"), np.array([both[x] for both in motion.values()])) for x in places}
     )
+    data = data.assign_coords(model=list(motion), time=np.arange(data.sizes["time"]) / 1000)
+    horizons = {"horizons": {"0.01": 0.8, "0.2": 3.2}, "energy_residual": 1e-4, "slow_peaks": None}
     models = {}
     for name in motion:
         trajectory = Trajectory(data.sel(model=name), np.zeros((0, 0)))
-        found: dict[str, Any] = {
-            "first_contact": FIRST_CONTACT,
-            "first_peak": {place: trajectory.first_peak(place) for place in ("tip", "head")},
-            "energy_residual": 1.0e-4,
-            "ensemble": {
-                "horizons": {"0.01": 0.8, "0.2": 3.2}, "energy_residual": 1e-4, "slow_peaks": None,
-            },
-        }  # fmt: skip
-        models[name] = model_summary(**found | dict((summary or {}).get(name, {})))
+        peaks = {place: trajectory.first_peak(place) for place in places}
+        found = {"first_contact": FIRST_CONTACT, "first_peak": peaks, "energy_residual": 1.0e-4}
+        own = (summary or {}).get(name, {})
+        models[name] = model_summary(**found | {"ensemble": horizons} | dict(own))
     whole = summary_of(models, ensemble={"members": 32, "slow_below": 1.67})
     return {verdict.id: verdict for verdict in judge(Results(case, data, whole, ensembles))}
 
@@ -246,11 +234,9 @@ def stratifying(drift: float, early: float = 0.0, count: int = 32) -> dict[str, 
     """
     time = np.arange(10_001) / 1000
     delays = early + drift * np.clip(time - 6.0, 0.0, 1.0)
-    names = [name for name in PEAKS if name != "beam-fe-bonded"]
-    return {
-        name: np.tile(
-            PEAKS[name] * 0.5 * (1.0 - np.cos(2.0 * np.pi * (time - i * delays) / PERIOD)),
-            (count, 1),
-        )
-        for i, name in enumerate(names)
+    peaks = {name: peak for name, peak in PEAKS.items() if name != "beam-fe-bonded"}
+    waves = {
+        name: peak * 0.5 * (1.0 - np.cos(2.0 * np.pi * (time - i * delays) / PERIOD))
+        for i, (name, peak) in enumerate(peaks.items())
     }
+    return {name: np.tile(wave, (count, 1)) for name, wave in waves.items()}

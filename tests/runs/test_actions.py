@@ -11,7 +11,17 @@ from protractile.runs.case import reading, toml
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.pipeline.models import build
-from tests.runs.case_texts import CLAMPED, COARSE, REST, STEEL, elements, read_case, refusal, table
+from tests.runs.case_texts import (
+    CLAMPED,
+    COARSE,
+    REST,
+    STEEL,
+    edited,
+    elements,
+    read_case,
+    refusal,
+    table,
+)
 from tests.runs.summaries import static_tip
 
 CANTILEVER = f"""
@@ -127,31 +137,15 @@ MOMENT = '[[load]]\nsegment = "beam"\nx = 6.0\nmagnitude = 2.0e4\nmoment = true\
         (PART.replace("from = 3.0", "x = 3.0"), "load[1].to: x is given; leave one of them out"),
         ('[[load]]\nsegment = "beam"\nmagnitude = 1.0\nramp = 1.0\nfrequency = 1.0',
          "load[1].frequency: ramp is given; leave one of them out"),
-        ("[[base]]\nacceleration = 1.0\ntable = [[0.0, 1.0], [0.0, 2.0]]",
-         "base[1].table: times must rise; entry 2 repeats that of entry 1"),
-        ('[[base]]\nacceleration = 1.0\nfile = "none.csv"',
-         "base[1].file: '{folder}/none.csv' cannot be read (No such file or directory); give a CSV "
-         "file of two columns, time in s and factor; a heading may say other units"),
         ('[[base]]\nacceleration = 1.0\nfile = "back.csv"',
          "base[1].file: 'back.csv' has a time in line 3 that does not rise; sort them"),
-        ('[[base]]\nacceleration = 1.0\ndirection = "y"', "base[1].direction: the boom is flat, "
-         "and nothing moves along 'y'; give the joints lateral_play"),
         ('[[load]]\nsegment = "beam"\nmagnitude = 1.0\nramp = 1.0\nreleased = true',
          "load[1].released: a load that is let go has acted for ever, without a history; leave one "
          "of them out"),
         ('[[stop]]\nsegment = "beam"\nx = 10.0\nplay = 0.01\nstiffness = 0.0',
          "stop[1].stiffness: must be positive on one side at least, got 0 on both"),
-        ("[start]\nvelocity = { fly = 1.0 }", "start.velocity: 'fly' is no segment; give 'beam'"),
-        ("[start]\nvelocity = { beam = { speed = 1.0 } }",
-         "start.velocity.beam.speed: unknown key; known ones are z, y, turn, lateral_turn, x"),
-        ("[start]\nvelocity = { beam = { lateral_turn = 1.0 } }",
-         "start.velocity.beam.lateral_turn: the boom is flat, and nothing moves along 'y'; "
-         "give the joints lateral_play"),
         (observe("contact_force", 9.0, segment="beam"),
-         "observe[1].name: 'contact_force' is the name of another output already; give it its "
-         "own"),
-        (observe("a", 9.0, segment="beam") + observe("a", 8.0, segment="beam"),
-         "observe[2].name: 'a' is the name of observe[1] already; give each its own"),
+         "observe[1].name: 'contact_force' is the name of another output already; give it its own"),
         (observe("a", 9.0, "twist", "beam"),
          "observe[1].quantity: the boom is flat, and nothing moves along 'y' or twists; give "
          "another quantity, or the joints lateral_play"),
@@ -159,13 +153,16 @@ MOMENT = '[[load]]\nsegment = "beam"\nx = 6.0\nmagnitude = 2.0e4\nmoment = true\
 )  # fmt: skip
 def test_bad_actions_are_refused(tmp_path: Path, text: str, line: str) -> None:
     (tmp_path / "back.csv").write_text("0, 1\n0.2, 2\n0.1, 3\n", encoding="utf-8")
-    refused = refusal(tmp_path, CANTILEVER + text + ELEMENTS)
-    assert refused == line.format(folder=tmp_path)
+    assert refusal(tmp_path, CANTILEVER + text + ELEMENTS) == line
 
 
 SERIES = '[[model]]\nname = "series"\nkind = "kantorovich"\nterms = [6]\nbase = "complete"\n'
 SHELL = '[[model]]\nname = "shell"\nkind = "shell"\nmesh_size = 0.2\ncontact_tolerance = "any"\n'
-BOX = "section = { height = 0.47, width = 0.41, flange = 0.006, web = 0.006 }\n"
+BOXED = edited(
+    CANTILEVER,
+    ("mass_per_length = 83.16\nsecond_moment_of_area = 3.7986e-4",
+     "section = { height = 0.47, width = 0.41, flange = 0.006, web = 0.006 }"),
+)  # fmt: skip
 # The tip of a cantilever, −q ∫ x² (3 L − x)/6 dx from 3 to 7 m over E J, and M a (L − a/2)/E J.
 UNDER_PART = -500.0 * (10.0 * (7.0**3 - 3.0**3) / 6.0 - (7.0**4 - 3.0**4) / 24.0) / BENDING
 UNDER_MOMENT = 2.0e4 * 6.0 * (10.0 - 3.0) / BENDING
@@ -175,21 +172,17 @@ UNDER_MOMENT = 2.0e4 * 6.0 * (10.0 - 3.0) / BENDING
 def test_models_have_the_deflections_of_statics(
     tmp_path: Path, load: str, expected: float, tools: BuildContext
 ) -> None:
-    """Reference: analytic. Elements and series contain the influence line of the tip, a cubic.
-
-    A shell rests near Timoshenko elements; its mesh has an error of 0.5 %.
+    """Reference: analytic. Elements and series contain the influence line of the tip, a cubic; a
+    shell with a mesh error of 0.5 % is shear-flexible.
     """
     for model in (ELEMENTS, SERIES):
         found = static_tip(read_case(tmp_path, CANTILEVER + load + model))
         assert found == pytest.approx(expected, rel=1e-9)
-    beam = CANTILEVER.replace("mass_per_length = 83.16\n", BOX).replace(
-        "second_moment_of_area = 3.7986e-4\n", ""
-    )
     elements = ELEMENTS.replace("euler-bernoulli", "timoshenko")
-    beams = static_tip(read_case(tmp_path, beam + load + elements))
-    assert static_tip(read_case(tmp_path, beam + load + SHELL), tools=tools) == pytest.approx(
-        beams, rel=5e-3
+    beam, shell = (
+        static_tip(read_case(tmp_path, BOXED + load + x), tools=tools) for x in (elements, SHELL)
     )
+    assert shell == pytest.approx(beam, rel=5e-3)
 
 
 TURNED = "[start]\nvelocity = { inner = { z = 0.01, turn = 0.02, x = 9.0 } }\n"

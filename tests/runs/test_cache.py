@@ -8,8 +8,7 @@ from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
-from threading import Event
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -57,10 +56,8 @@ def test_cache_removes_files_of_a_killed_process(tmp_path: Path) -> None:
     )
     assert python("-c", program).returncode == 9
     (left,) = tmp_path.iterdir()
-    cache = Cache(tmp_path)
-    assert cache.load("a", str) is None
-    cache.store("a", "second")
-    assert cache.load("a", str) == "second"
+    Cache(tmp_path).store("a", "second")
+    assert Cache(tmp_path).load("a", str) == "second"
     assert not left.exists()
 
 
@@ -92,7 +89,8 @@ def test_every_flipped_bit_is_found(tmp_path: Path, caplog: pytest.LogCaptureFix
 @pytest.mark.parametrize("make", [os.mkfifo, os.mkdir])
 def test_pipes_and_folders_are_no_entries(tmp_path: Path, make: Callable[[Path], object]) -> None:
     """Reference: by construction. Opening a pipe to write would wait for a reader for ever."""
-    for name in (ENTRY, ".lock", "foreign.record"):
+    names = {ENTRY, ".lock", "foreign.record"}
+    for name in names:
         make(tmp_path / name)
     os.utime(tmp_path / "foreign.record", (1.0, 1.0))
     cache = Cache(tmp_path)
@@ -101,7 +99,7 @@ def test_pipes_and_folders_are_no_entries(tmp_path: Path, make: Callable[[Path],
         cache.store("b", "first")
     assert cache.load("b", str) == "first"
     cache.make_room(0)
-    assert {ENTRY, "foreign.record", ".lock"} <= {path.name for path in tmp_path.iterdir()}
+    assert names <= {path.name for path in tmp_path.iterdir()}
 
 
 def test_every_number_counts_to_its_last_bit(paper_boom: Boom) -> None:
@@ -112,43 +110,36 @@ def test_every_number_counts_to_its_last_bit(paper_boom: Boom) -> None:
     assert key(paper_boom, 0.1) == key(same, 0.1)
     assert len({key(paper_boom, 0.1), key(changed, 0.1), key(paper_boom, 0.2)}) == 3
     assert key(np.arange(3.0)) != key(np.arange(3)) != key(np.arange(3).reshape(3, 1))
-    with pytest.raises(TypeError, match="builtin_function_or_method cannot be kept: it is no data"):
-        key(print)
 
 
 def test_where_it_lies(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
+    """Reference: the XDG base directories; in a container the user has a number but no name."""
     monkeypatch.setenv("XDG_CACHE_HOME", "/caches")
     monkeypatch.delenv("PROTRACTILE_CACHE", raising=False)
     assert Cache.of_user() == Cache(Path("/caches/protractile"))
     monkeypatch.setenv("PROTRACTILE_CACHE", str(tmp_path))
     assert Cache.of_user() == Cache(tmp_path)
-    # As in a container, the user has a number but no name.
     for name in ("PROTRACTILE_CACHE", "XDG_CACHE_HOME", "HOME"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr("os.getuid", lambda: 2**31 - 7)
     assert Cache.of_user() is None
-    assert caplog.messages == [
-        "there is no home folder, and results are not kept for later runs; give a folder "
-        "in PROTRACTILE_CACHE, or --no-cache"
-    ]
+    line = "there is no home folder, and results are not kept for later runs; give a folder in "
+    assert caplog.messages == [f"{line}PROTRACTILE_CACHE, or --no-cache"]
 
 
 def test_threads_wait_for_an_entry_in_progress(tmp_path: Path) -> None:
     """Reference: by hand. An entry with another key does not wait and does not release them."""
     cache, order = Cache(tmp_path), list[str]()
-    held = Event()
 
     def second() -> None:
-        held.wait()
         with cache.entry_lock(key("one")):
             order.append("second")
 
     with ThreadPoolExecutor(1) as pool:
-        waiting = pool.submit(second)
         with cache.entry_lock(key("one")):
-            held.set()
+            waiting = pool.submit(second)
             with cache.entry_lock(key("other")):
                 pass
             assert wait([waiting], timeout=0.3).not_done
@@ -211,11 +202,7 @@ def test_data_come_back(paper_boom: Boom, paper_law: PowerContact) -> None:
     assert observer.unit == "rad"
 
 
-class Stranger(NamedTuple):
-    path: Path
-
-
-@pytest.mark.parametrize("thing", [Path("a"), np.array([None]), len, {1}, Stranger(Path("a"))])
+@pytest.mark.parametrize("thing", [Path("a"), np.array([None]), len, {1}])
 def test_objects_other_than_data_are_not_stored(thing: object) -> None:
     with pytest.raises(TypeError, match="cannot be kept: it is no data"):
         write_record(thing, BytesIO())
@@ -231,7 +218,6 @@ LAWS = PowerContact.__module__
         '{"record": ["pathlib", "Path"], "parts": {}}',
         '{"record": ["protractile.runs.folder.cache", "Path"], "parts": {}}',
         '{"record": ["protractile.runs.folder.cache", "json"], "parts": {}}',
-        '{"record": ["tests.runs.test_records", "Stranger"], "parts": {"path": ""}}',
         f'{{"record": ["{LAWS}", "PowerContact"], "parts": {{"stiffness": -1.0}}}}',
         f'{{"record": ["{LAWS}", "restitution_damping"], "parts": {{}}}}', '{"array": [3]}',
         '{"unknown": []}', "not JSON", "5",

@@ -21,11 +21,11 @@ from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.motion import Motion
 from protractile.geometry.joint import Pad
 from protractile.runs.case import reading as case_file
+from protractile.runs.case.amounts import convert_to_si
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds import KINDS
 from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.case.load_tables import LoadTable
-from protractile.runs.case.reading import convert_to_si
 from protractile.runs.case.schema import Case
 from protractile.runs.case.sections import SectionTable
 from protractile.runs.folder.cache import Cache
@@ -35,10 +35,8 @@ from protractile.runs.pipeline.models import build
 from protractile.runs.pipeline.proofs import prove
 from protractile.runs.process.terminal import shorten
 from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
-from tests.runs.case_texts import (
-    read_case,
-    shipped,
-)
+from tests.runs.case_texts import read_case, shipped
+from tests.runs.case_texts import table as case_table
 from tests.runs.summaries import rubbing
 from tests.runs.test_combinations import CASES, FACTORS, LIFT
 from tests.system.run_folder import protractile
@@ -53,7 +51,7 @@ def case() -> Case:
     return case_file.select(shipped("coarse"), "", ["shell"], 1.0)
 
 
-def reduce(case: Case, cache: Cache | None) -> ReducedShell:
+def reduce(case: Case, cache: Cache) -> ReducedShell:
     tools = BuildContext(MPI.COMM_SELF, cache=cache)
     return build(case, build_boom(case), case.models[0], tools).shell
 
@@ -81,19 +79,15 @@ def varied(case: Case, play: float, times: float, ramp: float) -> Case:
     """Return the case with another play, multiplied loads, and a gust that rises in ``ramp`` s."""
     gust = LoadTable(segment="inner", x="head", magnitude=-50.0 * times, ramp=ramp)
     joints = tuple(replace(joint, play=play) for joint in case.joints)
-    sections = [segment.section for segment in build_boom(case).segments]
-    segments = tuple(
-        segment.model_copy(
-            update={
-                "load": times * segment.load,
-                "height_to_width": None,
-                "section": section
-                and SectionTable(**{name: getattr(section, name) for name in SIZES}),
-            }
-        )
-        for segment, section in zip(case.segments, sections, strict=True)
-    )
-    return case.model_copy(update={"joints": joints, "segments": segments, "loads": (gust,)})
+    segments = []
+    for table, segment in zip(case.segments, build_boom(case).segments, strict=True):
+        assert segment.section is not None
+        sizes = {name: getattr(segment.section, name) for name in SIZES}
+        # An inferred section would follow the play.
+        own = {"height_to_width": None, "section": SectionTable(**sizes)}
+        segments.append(table.model_copy(update={"load": times * table.load, **own}))
+    change = {"joints": joints, "segments": tuple(segments), "loads": (gust,)}
+    return case.model_copy(update=change)
 
 
 def test_another_play_and_load_are_the_same_entry(case: Case, tmp_path: Path) -> None:
@@ -103,18 +97,16 @@ def test_another_play_and_load_are_the_same_entry(case: Case, tmp_path: Path) ->
     other = varied(case, 0.004, -3.0, 0.1)
     found = reduce(other, cache).system
     assert len(entries(cache)) == 1
-    boom, (model,) = build_boom(other), other.models
-    contacts = model.model_boom(boom)
-    own = reduce_boom(contacts.boom, model.options(), MPI.COMM_SELF).system
+    contacts = other.models[0].model_boom(build_boom(other))
+    own = reduce_boom(contacts.boom, other.models[0].options(), MPI.COMM_SELF).system
     assert found.laws == own.laws
     assert [x.history for x in found.excitations] == [Ramp(0.1)]
-    for mine, theirs in (
-        (found.load, own.load),
-        (found.excitations[0].load, own.excitations[0].load),
-    ):
-        moved = found.rows / (found.omega2 + 1.0e4) @ mine
-        expected = own.rows / (own.omega2 + 1.0e4) @ theirs
-        assert np.abs(moved - expected).max() < 1e-9 * np.abs(expected).max()
+    moved, expected = (
+        [one.rows / (one.omega2 + 1.0e4) @ load for load in (one.load, one.excitations[0].load)]
+        for one in (found, own)
+    )
+    for mine, theirs in zip(moved, expected, strict=True):
+        assert np.abs(mine - theirs).max() < 1e-9 * np.abs(theirs).max()
 
 
 def test_unwritable_cache_gives_one_line(
@@ -122,13 +114,10 @@ def test_unwritable_cache_gives_one_line(
 ) -> None:
     folder = tmp_path / "cache"
     folder.write_text("a file where the folder should be")
-    found = reduce(case, Cache(folder))
-    assert found.system.num_modes > 0
-    assert [record.getMessage() for record in caplog.records] == [
-        f"{shorten(str(folder))}: the cache cannot be written (Not a directory), and results "
-        "are not kept for later runs; give another folder in PROTRACTILE_CACHE, or "
-        "--no-cache"
-    ]
+    assert reduce(case, Cache(folder)).system.num_modes > 0
+    what = "the cache cannot be written (Not a directory), and results are not kept for later runs"
+    line = f"{what}; give another folder in PROTRACTILE_CACHE, or --no-cache"
+    assert caplog.messages == [f"{shorten(str(folder))}: {line}"]
 
 
 # n = 1, so that the shell's contacts are no stiffer than a run's.
@@ -152,13 +141,11 @@ def test_motions_do_not_know_the_units(table: dict[str, Any], joint: dict[str, A
     case = rubbing(shipped("coarse"))
     joints = tuple(replace(own, **joint) for own in case.joints)
     case = case.model_copy(update={"joints": joints, "models": (model,)})
-    in_mm = convert_to_si(case.model_copy(update={"units": "mm-t-s"}))
-    si, mm = (
-        FixedStep(1.0e-4)(
-            Motion(build(x, build_boom(x), x.models[0], BuildContext(MPI.COMM_SELF)).system, 0.5)
-        )
-        for x in (case, in_mm)
-    )
+    motions = []
+    for one in (case, convert_to_si(case.model_copy(update={"units": "mm-t-s"}))):
+        built = build(one, build_boom(one), one.models[0], BuildContext(MPI.COMM_SELF))
+        motions.append(FixedStep(1.0e-4)(Motion(built.system, 0.5)))
+    si, mm = motions
     assert mm.first_contact == pytest.approx(si.first_contact, rel=1.0e-6)
     assert mm.first_contact < 0.4
     assert mm.energy_residual == pytest.approx(si.energy_residual, rel=0.01, abs=1.0e-9)
@@ -168,27 +155,23 @@ def test_motions_do_not_know_the_units(table: dict[str, Any], joint: dict[str, A
         assert apart <= (1.0e-9 if name == "tip" else 1.0e-8) * np.ptp(expected), name
 
 
-COMBINED_SHELL = """
+# Two levels of load and of axial forces at 45 degrees and, retracted, another geometry.
+TEXT = (
+    """
 model = [
   { name = "beam", kind = "finite-element" },
   { name = "shell", kind = "shell", mesh_size = 0.3, contact_tolerance = "any" },
 ]
 buckling = { modes = 1 }
 """
-# Two levels of load and of axial forces at 45 degrees and, retracted, another geometry.
-TEXT = (
-    COMBINED_SHELL
     + LIFT.replace("9e11", "2.1e11, yield_strength = 3.55e8")
     .replace('model = [{ name = "beam", kind = "finite-element", theory = "timoshenko" }]', "")
     .replace('bears = "corner"', "allowable_pressure = 2e7")
     + CASES
     + FACTORS
-    + """
-[[combination]]
-name = "C"
-load_cases = ["raised"]
-factors = { dead = 1.0, payload = 0.0 }
-"""
+    + case_table(
+        "[[combination]]", name="C", load_cases=["raised"], factors={"dead": 1.0, "payload": 0.0}
+    )
 )
 
 
@@ -217,17 +200,14 @@ def test_one_shell_serves_combinations_of_a_geometry(states: list[CombinationSta
             if row.quantity in ("tip", "stress", "pad_pressure", "cylinder_force"):
                 # The axial forces of the shared shell would change the tip of C by 0.7 %.
                 assert row.value == pytest.approx(expected[row.key], rel=2e-4)
-        assert built.shell is not None
-        system = built.system.gather_loads()
-        factors = [
-            built.shell.critical_factor_at(system, system.load_at(time))
-            for time in alone.time.tolist()
-        ]
         if not boom.compressed:
             assert state.critical_factor is None
             continue
-        # Walls keep the largest axial forces of all combinations, which is on the safe side.
+        assert built.shell is not None
         assert state.critical_factor is not None
+        system = built.system.gather_loads()
+        factors = (built.shell.critical_factor_at(system, system.load_at(t)) for t in alone.time)
+        # Walls keep the largest axial forces of all combinations, which is on the safe side.
         assert 0.85 < state.critical_factor / min(factors) < 1.0
 
 
@@ -235,31 +215,21 @@ def test_proofs_by_patches_and_factors(states: list[CombinationState], tmp_path:
     """Reference: by hand. The factor multiplies loads, and hence the stress, up to buckling."""
     case = read_case(tmp_path, TEXT)
     proofs = {(row.quantity, row.part): row for row in prove(case, states).rows}
-    patches = [
-        float(wall.values.max())
-        for state in states
-        for wall in state.walls
-        if (wall.quantity, wall.part) == ("wall_stress", "base")
-    ]
+    of = {COMBINATION + state.combined.name: state for state in states}
+    walls = [wall for state in states for wall in state.walls]
+    patches = [w.values.max() for w in walls if (w.quantity, w.part) == ("wall_stress", "base")]
     assert len(patches) == len(states)
     assert proofs["patch", "base"].value == max(patches)
     column = proofs["column", "boom"]
-    state = next(state for state in states if COMBINATION + state.combined.name == column.state)
-    stability = state.combined.combination.resistance.stability
+    state = of[column.state]
     assert state.critical_factor is not None
-    expected = state.critical_factor * column.value / stability
+    expected = state.critical_factor * column.value
+    expected /= state.combined.combination.resistance.stability
     assert column.limit == pytest.approx(expected, rel=1e-12)
     # Of both geometries, the state with the lowest estimate has factors.
-    buckled = [state for state in states if state.buckling]
-    assert [state.combined.name for state in buckled] == ["A, raised", "A, level"]
+    assert [s.combined.name for s in states if s.buckling] == ["A, raised", "A, level"]
     one = proofs["buckling", "base"]
-    factor = next(
-        found.factors[0]
-        for state in buckled
-        if COMBINATION + state.combined.name == one.state
-        for found in state.buckling
-        if found.segment == "base"
-    )
+    factor = next(x.factors[0] for x in of[one.state].buckling if x.segment == "base")
     slenderness = (3.55e8 / (one.value * factor)) ** 0.5
     reduction = min(1.0, (slenderness - 0.22) / slenderness**2) if slenderness > 0.673 else 1.0
     reduction = min(reduction, 0.83 / max(slenderness, 0.83))

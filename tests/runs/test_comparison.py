@@ -13,8 +13,6 @@ from scipy.stats import norm
 from protractile.analysis.comparison import Distributions, compare
 from protractile.analysis.low_pass import SlowPeaks, filter_low_pass, slow_peaks
 from protractile.cases import change
-from protractile.dynamics.motion import Motion
-from protractile.dynamics.predictability import integrate_ensemble
 from protractile.dynamics.trajectory import PointwiseDifferences
 from protractile.runs.case import reading as case_file
 from protractile.runs.case.schema import Case, StopTable
@@ -25,7 +23,6 @@ from protractile.runs.report.additions import Addition
 from protractile.runs.report.document import render
 from protractile.runs.report.model_tables import law_table, model_table, step_table
 from protractile.runs.report.predictability import comparison_tables, predictability_tables
-from tests.dynamics.reference import CHAOTIC
 from tests.runs.case_texts import shipped
 from tests.runs.summaries import (
     HORIZONS,
@@ -56,16 +53,13 @@ def ensemble(delay: float = 0.0, height: float = 1.0, growth: float = 0.0) -> xr
 
 def test_pointwise_differences_by_hand() -> None:
     """Reference: analytic. The difference 0.02 sin²(πt) up to 0.5 s is 1/51 of the larger range."""
-    one, other = (ensemble(height=height)["tip"].values[0] for height in (1.0, 1.02))
+    one, other = swing(), swing(1.02)
+    other[501:] += 1.0  # too late to count
     found = PointwiseDifferences.from_curves(one, other, TIME, 0.5)
     assert found.largest == pytest.approx(0.02 / 1.02, rel=1e-6)
     assert found.rms == pytest.approx(0.02 / 1.02 * np.sqrt(3.0 / 8.0), rel=2e-3)
-    other[501:] += 1.0  # too late to count
-    assert PointwiseDifferences.from_curves(one, other, TIME, 0.5) == found
-    differences = final_differences(
-        np.array([TIME, TIME]), np.array([1.25 * TIME, TIME]), TIME >= 9.0
-    )
-    assert differences == pytest.approx([2.5 / 12.5, 0.0])
+    curves = np.array([TIME, TIME]), np.array([1.25 * TIME, TIME])
+    assert final_differences(*curves, TIME >= 9.0) == pytest.approx([2.5 / 12.5, 0.0])
 
 
 def test_divergence_levels_of_two_models() -> None:
@@ -113,26 +107,13 @@ def test_distance_of_shifted_distributions() -> None:
         assert found.deviation == pytest.approx((1.0, 1.0), abs=0.02)
 
 
-def test_a_chaotic_system_is_like_itself() -> None:
-    """Reference: the same system with other changes, up to the horizon and beyond."""
-    one, other = (
-        integrate_ensemble(Motion(CHAOTIC, 40.0, 1e-2), 8, 1e-6, seed, "load") for seed in (1, 2)
-    )
-    found = compare(one, other, 2.0)
-    assert found.pointwise.largest == 0.0  # of the unchanged members
-    assert all(found.peaks.explained)
-    assert found.distributions.distance < 0.05
-    shifted = other.assign(tip=other["tip"] + 0.5 * np.ptp(other["tip"].values))
-    assert compare(one, shifted, 2.0).distributions.distance > 0.5
-
-
 @pytest.mark.parametrize(
     ("delay", "height", "expected"), [(0.1, 1.0, 0.1), (0.0, 0.8, 0.2), (-0.15, 0.9, 0.15)]
 )
 def test_distance_of_peaks(delay: float, height: float, expected: float) -> None:
     """Reference: analytic, the larger of the delay over the period and the difference in height."""
-    curves = np.array([swing(), swing(height, delay)])
     # On a clock that is half as fast, periods are 2 s.
+    curves = np.array([swing(), swing(height, delay)])
     first, apart = peak_distances(curves, 2.0 * TIME, 0.5 * CUTOFF)
     expected_times = 2.0 * np.arange(1, first.size - 1) + 1.0 + 2.0 * min(delay, 0.0)
     assert first[1:-1] == pytest.approx(expected_times, abs=6e-3)
@@ -140,7 +121,7 @@ def test_distance_of_peaks(delay: float, height: float, expected: float) -> None
 
 
 def test_missing_peaks_have_infinite_distance() -> None:
-    """Reference: by construction, a motion that ends at 4 s, and a late one."""
+    """Reference: by construction, a motion that ends at 4 s, a late one, and one without peaks."""
     still = np.where(TIME > 4.0, 0.0, swing())
     first, apart = peak_distances(np.array([swing(), still]), TIME, CUTOFF)
     missed = np.isinf(apart)
@@ -148,6 +129,7 @@ def test_missing_peaks_have_infinite_distance() -> None:
     assert (first[~missed] < 4.0).all()
     first, apart = peak_distances(np.array([swing(), swing(delay=0.6)]), TIME, CUTOFF)
     assert (first.size, np.isfinite(apart).all()) == (9, True)
+    assert [x.size for x in peak_distances(np.array([TIME, TIME]), TIME, CUTOFF)] == [0, 0]
 
 
 def test_known_peaks_under_a_ripple() -> None:
@@ -175,19 +157,16 @@ def test_spreads_over_members_up_to_the_first_missing_peak() -> None:
     lost = np.where((TIME > 4.0) & (TIME < 5.0), 0.0, swing())
     drifting = 0.5 * (1.0 - np.cos(2.0 * np.pi * TIME * 0.95))
     # The k-th peak drifts by (k − ½)·0.0526 s; half a period of the cut-off is 0.294 s.
-    for other, peaks in ((lost, 4), (drifting, 6)):
-        assert SlowPeaks.of(np.array([swing(), other]), TIME, CUTOFF).time.size == peaks
-    assert [x.size for x in peak_distances(np.array([TIME, TIME]), TIME, CUTOFF)] == [0, 0]
-    found = SlowPeaks.of(np.array([TIME, 2.0 * TIME]), TIME, CUTOFF)
-    assert found.time.size == 0
-    assert np.isnan([found.period, found.period_spread]).all()
+    for other, peaks in ((lost, 4), (drifting, 6), (TIME, 0)):
+        found = SlowPeaks.of(np.array([swing() if peaks else TIME, other]), TIME, CUTOFF)
+        assert found.time.size == peaks
+        assert np.isnan([found.period, found.period_spread]).all() == (peaks == 0)
 
 
 @pytest.mark.parametrize(
     ("times", "cutoff", "message"),
     [
         (2000, 500.0, "cutoff must be between 0 and 500 Hz, got 500 Hz"),
-        (2000, 0.0, "cutoff must be between 0 and 500 Hz, got 0 Hz"),
         (500, 2.0, "the signal must be longer than the period of the cut-off, 0.5 s, got 0.499 s"),
     ],
 )
@@ -212,16 +191,10 @@ def trajectories(**tips: np.ndarray) -> xr.Dataset:
     )
 
 
-BOTH = trajectories(kantorovich_4=swing(), kantorovich_5=swing())
-
-
 def test_the_reference_is_most_complicated_model() -> None:
-    for models, expected in (
-        ([*SERIES, "shell", "beam-fe-bonded"], "shell"),
-        ([*SERIES, "beam-fe-bonded"], "kantorovich-5"),
-        (["beam-fe-bonded"], None),
-    ):
-        assert reference_of(case_of(*models).models) == expected
+    for other, expected in (("shell", "shell"), ("timoshenko", "timoshenko")):
+        assert reference_of(case_of(*SERIES, other, "beam-fe-bonded").models) == expected
+    assert reference_of(case_of("beam-fe-bonded").models) is None
 
 
 def test_models_are_compared_with_the_reference() -> None:
@@ -242,9 +215,9 @@ def test_models_are_compared_with_the_reference() -> None:
     # All values of the half are below 0.5: half of the whole one's are.
     assert level.distributions.distance == pytest.approx(0.5, abs=0.02)
     # Without slow motion, or with one model, nothing is compared.
-    assert compare_models(case_of(*SERIES), BOTH, ensembles, None) is None
+    assert compare_models(case_of(*SERIES), data, ensembles, None) is None
     alone = case_of("kantorovich-4", friction=0.2)
-    assert compare_models(alone, BOTH.isel(model=[0]), ensembles.isel(model=[0]), SLOW) is None
+    assert compare_models(alone, data.isel(model=[0]), ensembles.isel(model=[0]), SLOW) is None
 
 
 def test_with_friction_every_model_is_compared_to_the_end() -> None:
@@ -252,13 +225,12 @@ def test_with_friction_every_model_is_compared_to_the_end() -> None:
     above = swing() + np.where(TIME <= 5.0, 0.1, 0.3)
     data = trajectories(kantorovich_4=above, kantorovich_5=swing(), beam_fe_bonded=0.1 * swing())
     case = case_of(*MODELS, friction=0.2)
-    found = compare_models(case, data, None, None)
-    assert list(found.whole) == ["kantorovich-4", "beam-fe-bonded"]
-    whole = found.whole["kantorovich-4"]
+    found = compare_models(case, data, None, None).whole
+    assert list(found) == ["kantorovich-4", "beam-fe-bonded"]
+    whole = found["kantorovich-4"]
     assert whole.until == [5.0, 10.0]
     assert whole.largest == pytest.approx([0.1, 0.3 / 1.2], rel=1e-2)
     assert whole.rms == pytest.approx([0.1, np.sqrt(0.5 * (0.1**2 + 0.3**2)) / 1.2], rel=1e-2)
-    assert found.whole["beam-fe-bonded"].largest == pytest.approx([0.9, 0.9], rel=1e-6)
     # A short run is compared to its end alone.
     short = compare_models(case, data.sel(time=slice(None, 2.0)), None, None).whole
     assert short["kantorovich-4"].until == [2.0]
@@ -329,17 +301,13 @@ def test_missing_peaks_make_no_table() -> None:
     (horizons,) = predictability_tables(results(ensemble=ENSEMBLE | {"slow_peaks": None}))
     assert horizons.rows == [("kantorovich-4", "0.80", "> 10", "–", "–")]
     none: dict[str, Any] = {k: [] for k in ("time", "time_spread", "height", "height_spread")}
-    values = {key: [None, None] for key in ("range", "mean", "deviation")}
-    level = LEVELS | {
-        "peaks": none | {"explained": []},
-        "distributions": values | {"since": None, "distance": None},
-    }
+    unknown: dict[str, Any] = {key: [None, None] for key in ("range", "mean", "deviation")}
+    unknown |= {"since": None, "distance": None}
+    level = LEVELS | {"peaks": none | {"explained": []}, "distributions": unknown}
     nothing = ENSEMBLE | {"slow_peaks": none | {"period": None, "period_spread": None}}
     found = results({"reference": "shell", "ensembles": {MODELS[0]: level}}, ensemble=nothing)
-    page = render(found, Addition(), [], [])
-    assert "Distribution of the tip" in page
-    assert "– / –" not in page
-    assert not any("Slow peaks" in title for title in re.findall("<h3>.*</h3>", page))
+    assert comparison_tables(found)[-1].rows == [("kantorovich-4", *5 * ["–"])]
+    assert not re.findall("<h3>.*Slow peaks", render(found, Addition(), [], []))
 
 
 def test_tables_of_differences_are_the_summary_s() -> None:
@@ -361,16 +329,13 @@ def test_tables_of_differences_are_the_summary_s() -> None:
 def test_steps_and_contact_laws_are_those_of_the_models() -> None:
     """Reference: the summary, and the case; bonded joints have no law."""
     found = results(steps_for_peaks=steps_for_peaks(1500), step_error=0.0123)
-    rows = step_table(found).rows
-    assert [cell.replace("\N{NO-BREAK SPACE}", "") for cell in rows[0][:4]] == [
-        "kantorovich-4", "4.2", "2380952", "2020",
-    ]  # fmt: skip
-    assert [row[-2:] for row in rows] == [
-        ("1\N{NO-BREAK SPACE}500", "1.2"), ("–", "–"), ("–", "–"),
-    ]  # fmt: skip
+    first, *others = step_table(found).rows
+    cells = [cell.replace("\N{NO-BREAK SPACE}", "") for cell in first]
+    assert cells[:4] + cells[-2:] == ["kantorovich-4", "4.2", "2380952", "2020", "1500", "1.2"]
+    assert [row[-2:] for row in others] == 2 * [("–", "–")]
     assert law_table(found).rows == [
         (name, "inner in outer", "14.0", "k 1e+13, n 2", "168.9") for name in MODELS[:2]
     ]
-    joints = [replace(joint, bonded=True) for joint in found.case.joints]
-    bonded = found.case.model_copy(update={"joints": tuple(joints)})
+    joints = tuple(replace(joint, bonded=True) for joint in found.case.joints)
+    bonded = found.case.model_copy(update={"joints": joints})
     assert not law_table(replace(found, case=bonded)).rows

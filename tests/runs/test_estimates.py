@@ -21,7 +21,6 @@ from protractile.runs.pipeline.estimates import (
     sweep_cost,
 )
 from protractile.runs.process.bad_input import BadInput
-from protractile.runs.sweep import points as sweep_points
 from tests.runs.case_texts import COARSE, edited, long_boom, read_case, refused, shipped, table
 from tests.system.run_folder import protractile, python
 
@@ -44,15 +43,12 @@ print(1024 * int(most.split()[1]))
 pytestmark = pytest.mark.usefixtures("here")
 
 
-def write(edits: dict[str, str]) -> None:
-    Path("case.toml").write_text(edited(COARSE, *edits.items()), encoding="utf-8")
-
-
 @pytest.mark.slow
 def test_memory_is_not_above_the_estimate_and_not_far_below() -> None:
     """Reference: external, the operating system. Compilation needs three times as much."""
-    write({"mesh_size = 0.25": "mesh_size = 0.1", "duration = 0.6": "duration = 0.01"})
-    told = run_cost(case_file.select(case_file.load("case.toml"), "", ["shell"])).memory
+    edits = ("mesh_size = 0.25", "mesh_size = 0.1"), ("duration = 0.6", "duration = 0.01")
+    case = read_case(Path(), edited(COARSE, *edits))
+    told = run_cost(case_file.select(case, "", ["shell"])).memory
     command = "run", "case.toml", "--out", "out", "--models", "shell"
     for _ in range(2):
         used = int(python("-c", PROGRAM, *command, folder=Path()).stdout.split()[-1])
@@ -81,27 +77,26 @@ def test_short_times_are_in_seconds() -> None:
 
 
 @pytest.mark.parametrize(
-    ("edits", "line"),
+    ("edit", "told"),
     [
-        ({"output_step = 1e-3": "output_step = 1e-7"}, "83 GB and 30 min"),
-        ({"mesh_size = 0.25": "mesh_size = 0.015"}, "9.1 GB and 3 min"),
-        ({"element_length = 0.5": "element_length = 0.002"}, "21 GB and 11.2 h"),
-        ({"duration = 0.6": "duration = 60.0\nstep = 1e-8"}, "2.6 GB and 20.1 h"),
+        (("output_step = 1e-3", "output_step = 1e-7"), "83 GB and 30 min"),
+        (("mesh_size = 0.25", "mesh_size = 0.015"), "9.1 GB and 3 min"),
+        (("element_length = 0.5", "element_length = 0.002"), "21 GB and 11.2 h"),
+        (("duration = 0.6", "duration = 60.0\nstep = 1e-8"), "2.6 GB and 20.1 h"),
     ],
 )
-def test_excessive_memory_or_time_is_refused(edits: dict[str, str], line: str) -> None:
+def test_excessive_memory_or_time_is_refused(edit: tuple[str, str], told: str) -> None:
     """Reference: non-regression, measured for a million outputs, degrees of freedom and steps."""
-    write(edits)
     with refused(
-        f"case.toml: --large: missing, and it may take {line}; give it to start anyway, or "
+        f"case.toml: --large: missing, and it may take {told}; give it to start anyway, or "
         "ask for fewer outputs, members, points, states or steps, or for coarser meshes"
     ):
-        refuse_large(run_cost(case_file.load("case.toml")), "case.toml")
+        refuse_large(run_cost(read_case(Path(), edited(COARSE, edit))), "case.toml")
 
 
 def test_frequencies_of_short_elements_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
     """Reference: non-regression, a dense eigenproblem of 22,000 coordinates."""
-    write({})
+    read_case(Path(), COARSE)
     vary = "--vary", "model[3].element_length=0.002,0.5"
     assert protractile("frequencies", "case.toml", *vary, "--models", "beam-fe") == 2
     line = "case.toml: --large: missing, and it may take 21 GB and 22.3 h; "
@@ -125,9 +120,7 @@ def test_a_check_of_short_elements_is_soon_done() -> None:
 def test_a_sweep_takes_the_time_of_its_points(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reference: analytic, equal points, two at a time."""
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
-    write({})
-    vary = ["joint.stiffness=1e13:1.1e13:100"]
-    points = [p.case for p in sweep_points.plan("case.toml", vary, ["beam-fe"], None).points]
+    points = 100 * [case_file.select(shipped("coarse"), "", ["beam-fe"])]
     one, all_of_them = sweep_cost(points[:1]), sweep_cost(points)
     assert all_of_them.memory == pytest.approx(2.0 * one.memory, rel=1e-9)
     assert all_of_them.seconds == pytest.approx(50.0 * one.seconds, rel=1e-9)
@@ -139,10 +132,9 @@ def test_many_combined_states_need_a_confirmation() -> None:
     for number in range(100):
         text += table("[[load_case]]", name=f"l{number}")
         text += table("[[combination]]", name=f"c{number}", factors={"dead": 1.0})
-    Path("case.toml").write_text(text, "utf-8")
-    many = case_file.load("case.toml")
-    with pytest.raises(BadInput, match=r"it may take 7\.3 GB and 4 min; "):
-        refuse_large(states_cost(many, proofs=False), "case.toml")
+    many = read_case(Path(), text)
+    cost = states_cost(many, proofs=False)
+    assert (str(cost), cost.large) == ("7.3 GB and 4 min", True)
     few = many.model_copy(update={"combinations": many.combinations[:9]})
     assert not states_cost(few, proofs=False).large
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -21,7 +20,6 @@ from protractile.runs.case.schema import Case
 from protractile.runs.measured.experiment import Computed, Experiment
 from protractile.runs.measured.fit import CHI_SQUARE_95, fit, profile
 from protractile.runs.measured.identify import identify, parse
-from protractile.runs.measured.keys import Keys
 from protractile.runs.measured.residuals import STEADY
 from protractile.runs.pipeline.models import MotionPlan, build
 from tests.runs.case_texts import refused
@@ -89,7 +87,7 @@ def test_the_best_of_several_starts() -> None:
     assert best.agreeing < 4
 
 
-# A boom that no gauge has seen yet, and the numbers that only the twin knows.
+# The numbers that only the twin knows.
 TIMES = np.arange(0.0, 2.0, 0.02)
 CLAMP = "segment[1].supports[1].rotation_stiffness"
 TRUTH = {"joint.play": 0.0042, "damping.modal": 0.027, "payload.mass": 93.0, CLAMP: 1.6e7}
@@ -116,8 +114,6 @@ BOOM: dict[str, Any] = {
     ],
     "model": [
         {"name": "shell", "kind": "shell", "mesh_size": 0.15, "contact_tolerance": "any"},
-        {"name": "elements", "kind": "finite-element", "theory": "euler-bernoulli",
-         "element_length": 0.5},
         {"name": "calibrated", "kind": "finite-element", "theory": "timoshenko",
          "element_length": 0.5, "calibrated_by": "shell"},
         {"name": "series", "kind": "kantorovich", "terms": [10, 10], "base": "complete"},
@@ -125,37 +121,8 @@ BOOM: dict[str, Any] = {
 }  # fmt: skip
 
 
-_BLANK = {"uncertainty": 1.0, "table": [(time, 0.0) for time in TIMES.tolist()]}
-CHANNELS = [
-    {"name": "tip", "quantity": "tip", **_BLANK},
-    {"name": "gauge", "quantity": "strain", "segment": "base", "x": 0.5, **_BLANK},
-]
-
-
-def distances(curves: Sequence[Array], seed: int, systematic: float, model: str) -> Array:
-    """Return the errors of the identified numbers over their standard errors; noise is 1 %."""
-    rng, channels = np.random.default_rng(seed), []
-    for curve, keys in zip(curves, CHANNELS, strict=True):
-        noise = 0.01 * float(np.ptp(curve))
-        noisy = curve + rng.normal(0.0, noise, curve.size)
-        table = [*zip(TIMES.tolist(), noisy.tolist(), strict=True)]
-        channels.append({**keys, "uncertainty": noise, "systematic": systematic, "table": table})
-    found = identify(load_case({**BOOM, "measured": channels}), BOUNDS, model, starts=1).found
-    assert found.determined.all()
-    return np.asarray((found.values - [*TRUTH.values()]) / found.errors)
-
-
-@pytest.mark.slow
-def test_a_series_identifies_beam_elements() -> None:
-    """Reference: by construction, readings of beam elements. Noise 1 %, unknowns within 2 σ.
-
-    Both models differ by less than 1 % of the ranges, in size and frequency by less than 0.3 %, the
-    error that all readings share.
-    """
-    experiment = Experiment(load_case({**BOOM, "measured": CHANNELS}), "case", "elements")
-    curves = [members[0] for _, members in experiment.evaluate(TRUTH)]
-    for seed in range(2):
-        assert (np.abs(distances(curves, seed, 0.003, "series")) < 2.0).all()
+def table(curve: Array, times: Array = TIMES) -> list[tuple[float, float]]:
+    return [*zip(times.tolist(), curve.tolist(), strict=True)]
 
 
 @pytest.mark.slow
@@ -164,7 +131,12 @@ def test_a_calibrated_beam_identifies_a_shell(tools: BuildContext) -> None:
 
     The stiffness is that of the clamp's rotation: the calibration has that of the plates.
     """
-    case = change(load_case({**BOOM, "measured": CHANNELS}), **TRUTH)
+    blank = {"uncertainty": 1.0, "table": table(0.0 * TIMES)}
+    channels = [
+        {"name": "tip", "quantity": "tip", **blank},
+        {"name": "gauge", "quantity": "strain", "segment": "base", "x": 0.5, **blank},
+    ]
+    case = change(load_case({**BOOM, "measured": channels}), **TRUTH)
     boom, (shell, *_) = build_boom(case), case.models
     built = build(case, boom, shell, tools)
     loaded = shell.analysis_model(boom, built)
@@ -172,30 +144,34 @@ def test_a_calibrated_beam_identifies_a_shell(tools: BuildContext) -> None:
     rest = States.of(loaded, equilibria(loaded.system))
     motions = [States.in_motion(loaded, plan.trajectory())]
     computed = Computed(plan.motion.system, rest, motions)
-    assert isinstance(case, Keys)
-    curves = [computed.read(channel)[0] for channel in case.measured]
-    assert (np.abs(distances(curves, 0, 0.005, "calibrated")) < 2.0).all()
+    rng = np.random.default_rng(0)
+    for channel, keys in zip(case.measured, channels, strict=True):
+        curve = computed.read(channel)[0]
+        noise = 0.01 * float(np.ptp(curve))
+        noisy = curve + rng.normal(0.0, noise, curve.size)
+        keys |= {"uncertainty": noise, "systematic": 0.005, "table": table(noisy)}
+    twin = load_case({**BOOM, "measured": channels})
+    found = identify(twin, BOUNDS, "calibrated", starts=1).found
+    assert found.determined.all()
+    assert (np.abs(found.values - [*TRUTH.values()]) < 2.0 * found.errors).all()
 
 
 def test_a_prediction_follows_the_covariance() -> None:
     """Reference: analytic. A weight that is known within 5 kg scatters the tip in proportion."""
-    tables = {**CANTILEVER, "model": CANTILEVER["model"], "start": {"state": "equilibrium"}}
     tip = {"name": "tip", "quantity": "tip", "value": -0.01, "uncertainty": 5.0e-4}
-    found = identify(load_case({**tables, "measured": [tip]}), {"payload.mass": (10.0, 900.0)})
-    stiffness = 100.0 / -tip_of(found.case, 100.0)
+    found = identify(load_case({**CANTILEVER, "measured": [tip]}), {"payload.mass": (10.0, 900.0)})
+    experiment = Experiment(found.case, "case")
+    (deflection, predicted) = (
+        float(experiment.evaluate({"payload.mass": mass})[0][1][0, 0])
+        for mass in (100.0, found.case.payload.mass)
+    )
+    stiffness = 100.0 / -deflection
     assert found.frame.loc["payload.mass", "value"] == pytest.approx(0.01 * stiffness, rel=1e-4)
     assert found.frame.loc["payload.mass", "error"] == pytest.approx(5e-4 * stiffness, rel=1e-4)
-    assert found.case.payload is not None
-    assert tip_of(found.case, found.case.payload.mass) == pytest.approx(-0.01, rel=1e-4)
+    assert predicted == pytest.approx(-0.01, rel=1e-4)
     case_in_mm = found.case.model_copy(update={"shown_units": "mm-t-s"})
     in_mm = identify(case_in_mm, {"payload.mass": (0.01, 0.9)}).frame
     assert in_mm.loc["payload.mass", "value"] == pytest.approx(0.01e-3 * stiffness, rel=1e-4)
-
-
-def tip_of(case: Case, mass: float) -> float:
-    """Return the tip of a cantilever at rest under a payload in kg."""
-    ((_, value),) = Experiment(case, "case").evaluate({"payload.mass": mass})
-    return float(value[0, 0])
 
 
 @pytest.mark.parametrize(
@@ -241,14 +217,13 @@ def test_accelerations_after_a_release_have_one_minimum() -> None:
     }  # fmt: skip
 
     def case_of(curve: Array, uncertainty: float = 1.0) -> Case:
-        table = [*zip(times.tolist(), curve.tolist(), strict=True)]
         load = {"segment": "fly", "x": "head", "magnitude": -4000.0, "released": True}
         changed = {
             "time": {"duration": 0.2, "output_step": 0.002, "step": 1.0e-4},
             "load": [load],
             "payload": {"mass": 20.0},
-            "model": [BOOM["model"][3] | {"terms": [4, 4]}],
-            "measured": [blank | {"table": table, "uncertainty": uncertainty}],
+            "model": [BOOM["model"][2] | {"terms": [4, 4]}],
+            "measured": [blank | {"table": table(curve, times), "uncertainty": uncertainty}],
         }
         return load_case({**BOOM, **changed})
 
@@ -270,8 +245,7 @@ def test_chaotic_motions_are_compared_by_their_features() -> None:
     blank = {"name": "tip", "quantity": "tip", "uncertainty": 2.0e-3}
 
     def case_of(curve: Array) -> Case:
-        pairs = [*zip(times.tolist(), curve.tolist(), strict=True)]
-        return load_case({**tables, "measured": [{**blank, "table": pairs}]})
+        return load_case({**tables, "measured": [{**blank, "table": table(curve, times)}]})
 
     experiment = Experiment(case_of(np.zeros(times.size)), "case", "kantorovich-5")
     ((_, (curve, *_)),) = experiment.evaluate({"joint.play": 0.0168})

@@ -15,10 +15,10 @@ from protractile.cases import change
 from protractile.geometry.fields import declared_units, describe, fields_of
 from protractile.geometry.units import System, Unit
 from protractile.runs.case import toml
+from protractile.runs.case.amounts import convert_to_si
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.contact import ContactTable, JointTable
 from protractile.runs.case.messages import _tables as tables_of
-from protractile.runs.case.reading import convert_to_si
 from protractile.runs.case.schema import Case, case_schema
 from protractile.runs.sweep.points import plan
 from tests.runs.case_texts import STEEL, edited, elements, read_case, refused
@@ -40,39 +40,20 @@ load = [
   {{ segment = "fly", magnitude = -12.0, file = "gust.csv" }},
 ]
 {steel}
-[[segment]]
-name = "base"
-length = 10.0
-supports = [0.0, {{ x = {{ tail = 1.5 }}, stiffness = 5e7 }}]
-section = {{ height = 0.47, width = 0.3, flange = 0.0066, web = 0.006 }}
-load = -831.6
-
-[[segment]]
-name = "fly"
-length = 9.7
-masses = [{{ x = 11.5, mass = 120.0 }}]
-mass_per_length = 55.07
-second_moment_of_area = 2.1829e-4
-rotary_inertia = 1.68
+[[segment]]; name = "base"; length = 10.0; \
+supports = [0.0, {{ x = {{ tail = 1.5 }}, stiffness = 5e7 }}]; \
+section = {{ height = 0.47, width = 0.3, flange = 0.0066, web = 0.006 }}; load = -831.6
+[[segment]]; name = "fly"; length = 9.7; masses = [{{ x = 11.5, mass = 120.0 }}]; \
+mass_per_length = 55.07; second_moment_of_area = 2.1829e-4; rotary_inertia = 1.68; \
 viscous_damping = 3.0
-
-[[joint]]
-outer = "base"
-inner = "fly"
-extension = 8.2
-stations = ["tail", {{ head = 0.3 }}]
-play = 0.0097
-stiffness = 1e13
-restitution = {{ coefficient = 0.8, speed = 0.1 }}
-dashpot = 2000.0
+[[joint]]; outer = "base"; inner = "fly"; extension = 8.2; stations = ["tail", {{ head = 0.3 }}]; \
+play = 0.0097; stiffness = 1e13; restitution = {{ coefficient = 0.8, speed = 0.1 }}; \
+dashpot = 2000.0; \
 drive = {{ travel = 0.4, speed = 0.7, least_overlap = 0.6, stiffness = 2e5, dashpot = 500.0 }}
 {beam}
-[[model]]
-name = "soft"
-kind = "finite-element"
-theory = "euler-bernoulli"
+[[model]]; name = "soft"; kind = "finite-element"; theory = "euler-bernoulli"; \
 contact = {{ force_table = [[1e-4, 900.0], [2e-4, 2500.0]] }}
-"""
+""".replace("; ", "\n")
 BEAM = elements("beam", theory="euler-bernoulli", element_length=0.25)
 
 # What stands for it in mm, t and s, key by key.

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Bounds and limits of results, their changes by each number of a case, and their scatter."""
 
-import re
 from functools import partial
 from pathlib import Path
 
@@ -11,38 +10,19 @@ import pytest
 from scipy.stats import norm
 
 from protractile.cases import run_case
-from protractile.runs import CASES
 from protractile.runs.case import reading
 from protractile.runs.case.actions import STANDARD_GRAVITY
 from protractile.runs.case.reading import CheckedCase, load
 from protractile.runs.check import check_case
 from protractile.runs.pipeline.quantities import decay_time
-from protractile.runs.process.bad_input import BadInput
 from protractile.runs.report.figure_context import Figure
 from protractile.runs.report.summary_table import limit_faults, limit_table
-from protractile.runs.sweep import output, sampling
-from protractile.runs.sweep.points import Plan, plan, tables_of
-from protractile.runs.sweep.run import Outcome, run_point
-from protractile.runs.sweep.sampling import (
-    CHANGE,
-    QUANTILES,
-    SHOWN,
-    Change,
-    changes,
-    normal_points,
-    plan_changes,
-)
+from protractile.runs.sweep import output
+from protractile.runs.sweep.points import plan
+from protractile.runs.sweep.sampling import QUANTILES, normal_points
 from protractile.runs.sweep.search import rigid_wall_cautions
-from protractile.runs.sweep.variation import numbers
 from tests.docs.conftest import toml_blocks
-from tests.runs.case_texts import (
-    CANTILEVER,
-    LOAD,
-    MASS,
-    THIN,
-    edited,
-    static_tip,
-)
+from tests.runs.case_texts import CANTILEVER, LOAD, MASS, THIN, edited, static_tip
 from tests.runs.summaries import printed, run
 from tests.system.run_folder import protractile
 
@@ -56,6 +36,7 @@ def _folder(here: Path, in_this_process: None) -> None:
     Path("case.toml").write_text(CANTILEVER, encoding="utf-8")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("unprinted")
 def test_a_bound_is_bracketed(capsys: pytest.CaptureFixture[str]) -> None:
     """Reference: analytic, the length at which q L⁴/(8 E J) is that of 4.321 m."""
@@ -110,8 +91,10 @@ def test_search_with_governing_walls_gives_a_caution() -> None:
     assert lines[0].endswith(" beam has rigid walls: the bound is unsafe; take a shell")
 
 
+@pytest.mark.slow
 def test_changes_are_those_of_closed_forms(capsys: pytest.CaptureFixture[str]) -> None:
-    """Reference: analytic, powers of the numbers in q L⁴/(8 E J) and √(E J/m)/L²."""
+    """Reference: analytic, powers of the numbers in q L⁴/(8 E J) and √(E J/m)/L²; q is negative."""
+    Path("case.toml").write_text(edited(CANTILEVER, ("load = ", "load = -")), encoding="utf-8")
     assert sweep("--sensitivity", "--out", "out") == 0
     table = pd.read_csv("out/sensitivity.csv", index_col="key")
     powers = {
@@ -132,57 +115,6 @@ def test_changes_are_those_of_closed_forms(capsys: pytest.CaptureFixture[str]) -
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["crane", "drawn-out"])
-def test_sensitivities_are_those_of_direct_sweeps(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Reference: other code, a sweep over both values of a key, or over the valid and the case's.
-
-    Of every sixth key, the first, those with a refused side and those behind them are compared.
-    """
-    text = (CASES / f"{name}.toml").read_text("utf-8")
-    for key, value in (("duration", "0.05"), ("output_step", "1e-2")):
-        text = re.sub(rf"(?m)^{key} = .*", f"{key} = {value}", text, count=1)
-    Path("case.toml").write_text(text, encoding="utf-8")
-    values = {place.name: value for place, value in numbers(tables_of(load("case.toml")))}
-    monkeypatch.setattr(sampling, "numbers", lambda tables: [*numbers(tables)][::6])
-    planned, changed_numbers = plan_changes("case.toml", None, None)
-    (model,) = planned.coordinates["model"]
-    refused = [i for i, one in enumerate(changed_numbers) if len(one.points) < 2]
-    chosen = {i for at in refused for i in (at, at + 1)} | {0, 6}
-    compared = [one for i, one in enumerate(changed_numbers) if i in chosen]
-    outcomes = [Outcome({}, {}) for _ in planned.points]
-    for index in [0, *(index for one in compared for index in one.points.values())]:
-        outcomes[index] = run_point(planned.points[index].case)
-    found = changes(planned, changed_numbers, outcomes)
-    base = outcomes[0].models[model]
-
-    def sweep_over(change: Change, *sides: int) -> Plan:
-        texts = [repr((1.0 + CHANGE * side) * values[change.key]) for side in sides]
-        return plan("case.toml", [f"{change.key}={','.join(texts)}"], [model], None)
-
-    for change in compared:
-        for side in {-1, 1} - {*change.points}:
-            with pytest.raises(BadInput):
-                sweep_over(change, 0, side)
-        if not change.points:
-            continue
-        low, high = (-1, 1) if len(change.points) == 2 else sorted([*change.points, 0])
-        try:
-            swept = sweep_over(change, low, high)
-        except BadInput as error:
-            if "no model of the sweep depends on it" not in error.what:
-                raise
-            continue
-        first, last = (run_point(point.case).models[model] for point in swept.points)
-        if values[change.key] < 0.0:
-            first, last = last, first
-        for result in {*SHOWN} & {*found.columns}:
-            expected = (last[result] - first[result]) / abs(base[result]) / (high - low)
-            got = found[result].get(change.key, 0.0)
-            assert got == pytest.approx(expected, rel=1e-6, abs=2e-7), (change.key, result)
-
-
 def test_a_refused_side_is_named(capsys: pytest.CaptureFixture[str]) -> None:
     """Reference: analytic, g cos 89.1° of weight with 1 % less; 1 % more is refused.
 
@@ -202,8 +134,7 @@ def test_a_refused_side_is_named(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 SD = 5.0
-SPREAD = f"{{ mean = {LOAD}, sd = {SD} }}"
-SCATTERED = CANTILEVER.replace(f"load = {LOAD}", f"load = {SPREAD}")
+SCATTERED = CANTILEVER.replace(f"load = {LOAD}", f"load = {{ mean = {LOAD}, sd = {SD} }}")
 
 
 @pytest.mark.parametrize("dimensions", [1, 3, 12])
@@ -217,6 +148,7 @@ def test_points_are_normal(dimensions: int) -> None:
     np.testing.assert_allclose(found, norm.ppf(QUANTILES)[:, None] + 0.0 * found, atol=0.1)
 
 
+@pytest.mark.slow
 def test_a_linear_result_scatters_like_its_load(capsys: pytest.CaptureFixture[str]) -> None:
     """Reference: analytic, the tip q L⁴/(8 E J) of a normally distributed q."""
     Path("case.toml").write_text(SCATTERED, encoding="utf-8")
@@ -239,13 +171,10 @@ def test_a_linear_result_scatters_like_its_load(capsys: pytest.CaptureFixture[st
     [
         (SCATTERED, "48",
          "--samples: must be a power of 2 above 2 and at most 10000, such as 64, got 48"),
-        (SCATTERED, str(2**200), "--samples: must be a power of 2 above 2 and at most 10000, "),
         (CANTILEVER, "64", "--samples: the case has no number with a mean and an sd; give one, for "
          "example { mean = 0.003, sd = 0.0005 }"),
         (SCATTERED.replace(f"sd = {SD}", "sd = 0"), "64",
          "segment[1].load: must have a finite mean and an sd above 0, got 100.0 and 0"),
-        (SCATTERED.replace(f"mean = {LOAD}", "mean = 'a'"), "64",
-         "segment[1].load: must have a finite mean and an sd above 0, got 'a' and 5.0"),
         (CANTILEVER.replace(f"= {MASS}", f"= {{ mean = {MASS}, sd = 15.0 }}"), "64",
          "--samples: a sample is not valid, segment[1].mass_per_length: must be a"),
     ],
@@ -309,6 +238,7 @@ def test_check_compares_limits_with_the_tip_at_rest() -> None:
         assert [line for line in checked if "imit " in line] == lines
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("few_figures")
 def test_the_exit_status_is_1_beyond_a_limit(capsys: pytest.CaptureFixture[str]) -> None:
     write("tip = 0.001\npad_pressure = 1e6\ndecay_time = 10.0")
@@ -325,6 +255,7 @@ def test_the_exit_status_is_1_beyond_a_limit(capsys: pytest.CaptureFixture[str])
     assert protractile("run", "case.toml", "--out", "out") == 0
 
 
+@pytest.mark.slow
 def test_a_sweep_draws_and_counts_limits(figures: list[Figure]) -> None:
     """Reference: analytic, static tips of q L⁴/(8 E J)."""
     limit = static_tip(4.5)

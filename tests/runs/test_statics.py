@@ -39,14 +39,7 @@ from protractile.runs.pipeline.models import build
 from protractile.runs.pipeline.results import Results
 from studies.reference_models.statics import static_response
 from tests.modal import modal_system
-from tests.runs.case_texts import (
-    CLAMPED,
-    box,
-    elements,
-    read_case,
-    shipped,
-    table,
-)
+from tests.runs.case_texts import CLAMPED, box, elements, read_case, shipped, table
 from tests.runs.summaries import answers_of, model_summary, printed_check, summary_of
 
 
@@ -61,21 +54,19 @@ def test_masses_forces_and_tips_are_those_of_hand() -> None:
     assert "all 1382 0 8.586" in lines
     rows = {tuple(line.split()[:2]): line.split()[2:] for line in lines}
     for place, expected in {
-        ("outer", "0"): [4.552],
-        ("outer", "2"): [-5.934],
-        ("inner", "9"): [2.203, 0.0148],
-        ("inner", "10"): [-2.7535, 0.0166],
-    }.items():
+        ("outer", "0"): [4.552], ("outer", "2"): [-5.934],
+        ("inner", "9"): [2.203, 0.0148], ("inner", "10"): [-2.7535, 0.0166],
+    }.items():  # fmt: skip
         assert [float(value) for value in rows[place]] == pytest.approx(expected, rel=1e-3)
-    # 15 and 17 µm of contact turn the segment, too.
-    tips = "Static tip deflection (t = 0) in the beam estimate: 143.2 mm; without play 9.916 mm."
-    assert tips in lines
-    # What 2.2 and 2.8 kN press contacts of 1e13 N/m² in is in it.
-    tilt = (
+    # 15 and 17 µm of contact, in which 2.2 and 2.8 kN press, turn the segment, too.
+    assert {
+        "Static tip deflection (t = 0) in the beam estimate: 143.2 mm; without play 9.916 mm.",
         "Play rotates 'inner' by 14.03 mrad in 'outer', which moves the tip by 133.3 mm, under the "
-        "loads at t = 0 s."
-    )
-    assert tilt in lines
+        "loads at t = 0 s.",
+    } <= {*lines}
+    heavy = tuple(s.model_copy(update={"load": 1.0e300}) for s in shipped("coarse").segments)
+    lines = told(shipped("coarse").model_copy(update={"segments": heavy}))
+    assert "There is no static equilibrium under the loads at t = 0." in lines
 
 
 def test_a_boom_without_play_has_no_tilt_and_its_stops_are_its_own() -> None:
@@ -123,19 +114,11 @@ def test_stiffeners_weigh_across_as_along(tmp_path: Path) -> None:
     )
     boom = build_boom(case)
     series, beam = (build(case, boom, model).system.gather_loads() for model in case.models)
-    tips = [
-        float(system.observers["tip"].row @ static_response(system, system.load))
-        for system in (series, beam)
-    ]
-    assert tips[0] == pytest.approx(tips[1], rel=1e-4)
+    of_series, of_beam = (
+        one.observers["tip"].row @ static_response(one, one.load) for one in (series, beam)
+    )
+    assert of_series == pytest.approx(of_beam, rel=1e-4)
     assert series.frequencies[:2] == pytest.approx(beam.frequencies[:2], rel=1e-3)
-
-
-def test_a_boom_without_rest_says_so() -> None:
-    case = shipped("coarse")
-    segments = tuple(s.model_copy(update={"load": 1.0e300}) for s in case.segments)
-    lines = told(case.model_copy(update={"segments": segments}))
-    assert "There is no static equilibrium under the loads at t = 0." in lines
 
 
 def ball(*histories: History) -> GapSystem:
@@ -147,17 +130,15 @@ def ball(*histories: History) -> GapSystem:
 
 
 def test_instants_are_at_extremes_of_loads() -> None:
-    """Reference: by hand. A ramp peaks at its end, a sine of 1 Hz at 0.25 and 0.75 s."""
+    """Reference: by hand. A ramp peaks at its end, a sine of 1 Hz at 0.25 and 0.75 s; a boom
+    extended from 1 s and retracted at 3 s has the second of two peaks, too.
+    """
     assert instants(ball(), 2.0) == [0.0]
     assert instants(ball(Ramp(0.3)), 2.0) == [0.0, 0.3]
     assert instants(ball(Sine(1.0)), 1.0) == pytest.approx([0.0, 0.25, 0.75], abs=1e-3)
     # One of 1000 Hz is 0 at every millisecond.
     _, *peaks = instants(ball(Sine(1000.0)), 2.0)
     assert Sine(1000.0)(np.array(peaks)) == pytest.approx([1.0, -1.0], rel=1e-3)
-
-
-def test_extended_boom_is_under_the_largest_loads_meanwhile() -> None:
-    """Reference: by hand. Extended from 1 s, the second of two peaks, retracted at 3 s."""
     ways = PiecewiseLinear([0.0, 1.0, 2.0, 3.0], [0.0, 4.0, 4.0, -1.0])
     still = RowTable.interpolate(lambda s: np.ones((1, 1)), [-1.0, 4.0])
     drawn = [Travel(ways, still, (("rows", 0),), "")]
@@ -259,22 +240,20 @@ def test_notes_name_models_that_are_chaotic_or_need_many_steps(answers: Results)
         "wild": model_summary(ensemble=ensemble(3.2), step_error=0.34),
         "calm": model_summary(ensemble=ensemble(None), energy_residual=2e-4, step_error=9e-4),
     }
-    ten, fixed = TimeTable(duration=10.0), TimeTable(duration=10.0, step=1e-5)
+    ten = TimeTable(duration=10.0)
     notes = [*quality_notes(summary_of(models), Rows(), None, ten)]
-    chaotic, regular, step, energy = notes
     assert [note.what for note in notes] == ["horizon", "horizon", "step", "energy"]
+    chaotic, regular, step, energy = (note.line for note in notes)
     error = "The estimated error by the time step is at most 34 % of the range of a deflection."
-    assert step.line == (
+    assert step == (
         f"{error} It is above time.tolerance of 0.1 % in wild: the motion is chaotic, or needs too "
         "many steps."
     )
-    assert "after these times: wild 3.20 s." in chaotic.line
-    assert regular.line == "The motion of calm can be predicted over the whole 10 s."
-    assert energy.line.endswith("in every model; calm has the largest error.")
-    *_, step, _ = quality_notes(summary_of(models), Rows(), None, fixed)
-    assert step.line == error
-    none = summary_of({"plain": model_summary()})
-    assert [one.what for one in quality_notes(none, Rows(), None, ten)] == ["energy"]
+    assert "after these times: wild 3.20 s." in chaotic
+    assert regular == "The motion of calm can be predicted over the whole 10 s."
+    assert energy.endswith("in every model; calm has the largest error.")
+    fixed = quality_notes(summary_of(models), Rows(), None, TimeTable(duration=10.0, step=1e-5))
+    assert [note.line for note in fixed if note.what == "step"] == [error]
     # Of the run, the static tips of both models.
     tips = answers.rows.where(play=True, state=INITIAL, quantity="tip")
     series, beam = (tips.where(model=name)[0].value for name in ("kantorovich-5", "beam-fe"))

@@ -204,7 +204,7 @@ def test_a_title_is_no_card() -> None:
 @pytest.mark.parametrize(
     ("message", "shown"),
     [
-        ("must be below 4.8 m, got 4.9 m", "must be below 4800 mm, got 4900 mm"),
+        ("must be between 0 and 4.8 m, got 4.9 m", "must be between 0 and 4800 mm, got 4900 mm"),
         ("-0.033 m of 150 kg at 2e8 Pa and 3 m/s",
          "-33 mm of 0.15 t at 200 MPa and 3000 mm/s"),
         ("at t = 0.5 s, of 20 N/m", "at t = 0.5 s, of 0.02 N/mm"),

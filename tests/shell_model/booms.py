@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Booms for tests of shells, each reduced once, and their comparison with beams."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
 from functools import cache, partial
@@ -115,6 +115,21 @@ def reduced(
     )
     compute = partial(reduce_boom, *inputs, MPI.COMM_WORLD)
     return load_or_compute(Cache.of_user(), inputs, MPI.COMM_WORLD, compute)
+
+
+def rigid_state(system: GapSystem, readings: Mapping[str, float]) -> Array:
+    """Return the rigid motion (num_modes,) of the free inner segment with these outputs."""
+    free = np.flatnonzero(system.omega2 == 0.0)
+    rows = np.array([system.observers[name].row[free] for name in readings])
+    state = np.zeros(system.num_modes)
+    state[free] = np.linalg.lstsq(rows, np.array(list(readings.values())), rcond=None)[0]
+    return state
+
+
+def contact_forces(system: GapSystem, state: Array) -> Array:
+    """Return the force of each row in N."""
+    gaps = system.rows @ state
+    return np.array([float(law.force(y)) for law, y in zip(system.laws, gaps, strict=True)])
 
 
 def pressed_rest(system: GapSystem, at: Sequence[bool] | slice = slice(None)) -> Array:

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The shell in space: pads in the corners, lateral motion and twist, and no lateral play."""
 
-import tomllib
 from dataclasses import replace
 
 import numpy as np
@@ -10,25 +9,26 @@ from mpi4py import MPI
 
 from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.damping import closed_contact_modes
 from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.excitation import Step
 from protractile.dynamics.gap_system import GapSystem
-from protractile.dynamics.integrator import AdaptiveStep
-from protractile.dynamics.motion import Motion
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, BoomError
-from protractile.runs.case.reading import check_tables
+from protractile.geometry.boom import Boom, Joint, Load, Support
+from protractile.geometry.box import BoxSection
 from protractile.shell_model.boom_shell import ShellOptions
 from protractile.shell_model.reduced_shell import reduce_boom
 from studies import sections
-from tests.runs.case_texts import CLAMPED, STEEL, box, elements, joint, table
 from tests.shell_model.booms import (
     LATERAL_LAW,
     LAW,
     bonded_beams,
     boom_in_space,
+    box_segment,
     flat_boom,
     reduced,
+    rigid_state,
 )
 
 # σ in rad²/s² of the compliances that are compared: below and above the lowest ω².
@@ -50,23 +50,15 @@ def _differ(found: Array, expected: Array) -> float:
 
 
 @pytest.mark.slow
-def test_without_lateral_load_the_boom_moves_as_the_flat_one() -> None:
-    """Reference: the flat shell. Compliances, and the motion until the first contact, agree within
-    1e-9; then within 1 %.
-    """
+def test_without_lateral_load_the_boom_gives_way_as_the_flat_one() -> None:
+    """Reference: the flat shell. Nothing moves sideways."""
     flat, space = (reduced(one, 0.5, moments=2).system for one in (flat_boom(), boom_in_space()))
     for sigma in SHIFTS:
         expected = _compliance(flat, flat.rows, sigma)
         assert _differ(_compliance(space, _walls(space, "z"), sigma), expected) < 1.0e-9
-    motions = [
-        AdaptiveStep()(Motion(system, 0.2, output_step=0.01)).data for system in (flat, space)
-    ]
-    tips = [motion["tip"].values for motion in motions]
-    early = motions[0]["time"].values < 0.115
-    assert _differ(tips[1][early], tips[0][early]) < 1.0e-9
-    assert _differ(tips[1], tips[0]) < 0.01
-    sideways = np.abs(motions[1]["tip_lateral"].values).max()
-    assert sideways < 1.0e-9 * np.abs(tips[1]).max()
+        moved = space.load / (space.omega2 + sigma)
+        tip, aside = (space.observers[name].row @ moved for name in ("tip", "tip_lateral"))
+        assert abs(aside) < 1.0e-9 * abs(tip)
 
 
 @pytest.mark.slow
@@ -100,17 +92,11 @@ def test_a_boom_on_its_side_is_the_same_boom() -> None:
 
 @pytest.mark.slow
 def test_segments_rolling_together_keep_their_gaps() -> None:
-    """Reference: analytic. Under a rotation φ, flange pads move by φ y and web pads by −φ z. (11):
-    each pad's contact row gives N for its friction.
-    """
+    """Reference: analytic. By a roll φ, pads move by φ y, −φ z; (11): N of each pad's own row."""
     system = reduced(boom_in_space(friction=0.2), 0.5).system
-    rigid = np.flatnonzero(system.omega2 == 0.0)
-    names = ("tip", "tail", "tip_lateral", "tail_lateral", "tip_twist")
-    rows = np.array([system.observers[name].row[rigid] for name in names])
-    state = np.zeros(system.num_modes)
-    state[rigid] = np.linalg.solve(rows, [0.0, 0.0, 0.0, 0.0, 1.0e-3])
-    section = flat_boom().segments[1].section
-    outer = flat_boom().segments[0].section
+    still = dict.fromkeys(("tip", "tail", "tip_lateral", "tail_lateral"), 0.0)
+    state = rigid_state(system, still | {"tip_twist": 1.0e-3})
+    outer, section = (segment.section for segment in flat_boom().segments)
     along_z = np.array(system.station_directions)[system.station_of_row] == "z"
     gaps = system.rows @ state
     assert np.abs(gaps[along_z]) == pytest.approx(0.5e-3 * section.width, rel=1.0e-9)
@@ -122,11 +108,6 @@ def test_segments_rolling_together_keep_their_gaps() -> None:
     found = [(one.normal_rows, one.normal_force, one.station) for one in system.frictions]
     assert found == [((row,), 0.0, at) for row, at in enumerate(system.station_of_row)]
     assert list(system.station_directions) == ["z", "z", "y", "y"]
-    stiffness = np.zeros((4, 2))
-    for law, station in zip(system.laws, system.station_of_row, strict=True):
-        for term in law.terms:
-            stiffness[station, int(term.side > 0.0)] += term.stiffness
-    assert stiffness == pytest.approx(1.0e13)
 
 
 @pytest.mark.slow
@@ -138,47 +119,22 @@ def test_the_bonded_boom_vibrates_as_beams_in_both_planes() -> None:
     assert reduced(boom, 0.5).system.frequencies[:6] == pytest.approx(expected, rel=0.01)
 
 
-def test_contact_across_the_flanges_is_for_flat_booms() -> None:
-    message = (
-        "contact_line: 'across' spreads the force over the flanges of a flat boom; in space the "
-        "pads sit in the corners: give 'near webs' or 'surface'"
-    )
-    with pytest.raises(BoomError, match=f"^{message}$"):
-        reduced(boom_in_space(), 0.5, "across")
-
-
-SQUARES = 0.3, 0.26
-
-
-def boom_of(stiffness: float) -> Boom:
-    """Return a boom of two square boxes without play, which a vertical load at the tip presses."""
-    outer, inner = ((size, size, 0.0065 - 0.0005 * i, 0.0065 - 0.0005 * i)
-                    for i, size in enumerate(SQUARES))  # fmt: skip
-    ends = f"lateral_play = 0.0\nstiffness = {stiffness}"
-    text = 'title = "square boxes"\ntime = { duration = 0.05 }\n' + STEEL
-    text += box("base", (0.0, 4.0), outer, CLAMPED) + box("fly", (3.0, 7.0), inner)
-    text += joint("fly", "base", 0.0, (3.0, 4.0), ends) + elements("beam")
-    text += table("[[load]]", segment="fly", x="head", magnitude=-100.0)
-    return check_tables(tomllib.loads(text), "boom").boom
-
-
-def first_pair(system: GapSystem) -> tuple[float, float]:
-    """Return the first two frequencies in Hz at rest under the loads."""
-    load = system.load + np.sum([one.load for one in system.excitations], axis=0)
-    first, second = closed_contact_modes(system, equilibrium(system, load))[0][:2]
-    return float(first) / (2.0 * np.pi), float(second) / (2.0 * np.pi)
-
-
-def test_a_beam_moves_alike_in_both_planes() -> None:
-    """Reference: analytic, the symmetry of a square; before, 7.66 Hz laterally for 3.71 Hz."""
-    models = finite_element_segments(boom := boom_of(1.0e6), 0.5, "timoshenko", rotary_inertia=True)
-    first, second = first_pair(gap_system(boom, models))
-    assert first == pytest.approx(second, rel=1e-6)
-
-
 @pytest.mark.slow
-def test_a_shell_moves_alike_in_both_planes() -> None:
-    """Reference: analytic, the symmetry of a square; before, the lateral one was 27 % lower."""
-    shell = reduce_boom(boom_of(1.0e8), ShellOptions(mesh_size=0.15), MPI.COMM_SELF)
-    first, second = first_pair(shell.system)
-    assert first == pytest.approx(second, rel=1e-3)
+@pytest.mark.parametrize("kind", ["beam", "shell"])
+def test_square_boxes_move_alike_in_both_planes(kind: str) -> None:
+    """Reference: analytic, the symmetry of a square. Before, 7.66 Hz laterally for 3.71 Hz."""
+    base, fly = (BoxSection(size, size, wall, wall) for size, wall in ((0.3, 65e-4), (0.26, 6e-3)))
+    segments = (
+        box_segment("base", 0.0, 4.0, base, supports=(Support(0.0, "clamped"),)),
+        box_segment("fly", 3.0, 7.0, fly),
+    )
+    law = PowerContact(1.0e6 if kind == "beam" else 1.0e8, 1.0)
+    joint = Joint(0, 1, (3.0, 4.0), 0.0, lateral_play=0.0, contact=law, lateral_contact=law)
+    boom = Boom(segments, (joint,), (Load(1, "z", -100.0, 7.0, Step()),))
+    if kind == "beam":
+        system = gap_system(boom, finite_element_segments(boom, 0.5, "timoshenko", True))
+    else:
+        system = reduce_boom(boom, ShellOptions(mesh_size=0.15), MPI.COMM_SELF).system
+    rest = equilibrium(system, system.gather_loads().load)
+    first, second = closed_contact_modes(system, rest)[0][:2]
+    assert first == pytest.approx(second, rel=1e-6 if kind == "beam" else 1e-3)

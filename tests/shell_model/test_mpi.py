@@ -119,9 +119,7 @@ def failure(comm: MPI.Comm) -> list[str] | None:
 
 
 def test_ranks_give_the_serial_results(tmp_path: Path) -> None:
-    """Reference: one rank, which compiles for the others, to the last bit of all that decides a
-    motion, of its stresses and of inertia loads on edges of three walls; buckling factors to 1e-8.
-    """
+    """Reference: one rank, to the last bit; buckling factors to 1e-8."""
     serial = everything(MPI.COMM_SELF)
     done = ranks_in(tmp_path)(2, _PROGRAM)
     assert done.returncode == 0, done.stderr

@@ -3,7 +3,6 @@
 
 import math
 import os
-from collections.abc import Mapping
 from concurrent.futures import BrokenExecutor
 from dataclasses import replace
 
@@ -21,13 +20,6 @@ from protractile.geometry.section import Section
 from protractile.runs.process.workers import workers
 from protractile.shell_model.contact.local_compliance import shell_compliance
 from protractile.shell_model.reduction.krylov import KrylovOptions
-from protractile.shell_model.reduction.mirror import (
-    ALONG_Y,
-    ALONG_Z,
-    BREATHING,
-    TWISTING,
-    SymmetryClass,
-)
 from protractile.shell_model.reduction.segment import ReducedSegment, SegmentInputs, reduce_segments
 from protractile.shell_model.reduction.symmetry import Job, SymmetryReduction
 from protractile.shell_model.segment.segment_shell import SegmentShell, assemble_segment
@@ -45,6 +37,11 @@ def _inputs(shell: SegmentShell) -> np.ndarray:
         for side in (1.0, -1.0)
     ]
     return np.column_stack([row for row in rows if row.any()] + [80.0 * shell.unit_loads["z"]])
+
+
+def _held() -> tuple[SymmetryReduction, Array]:
+    shell = box_shell(0.5, supports=HELD)
+    return SymmetryReduction(shell), _inputs(shell)
 
 
 @pytest.mark.slow
@@ -76,12 +73,10 @@ def test_a_helper_changes_no_bit_and_may_die() -> None:
 
 def test_dependent_inputs_add_no_coordinates() -> None:
     """The space is the same for any order, and with sums, copies and zeros among the inputs."""
-    shell = box_shell(0.5, supports=HELD)
-    inputs = _inputs(shell)
+    symmetry, inputs = _held()
     twice = np.column_stack([inputs, inputs[:, :1] + inputs[:, 1:2], 0.0 * inputs, inputs])
-    options = KrylovOptions(moments=2)
     once, again = (
-        reduce_segment(SymmetryReduction(shell), block, options) for block in (inputs, twice)
+        reduce_segment(symmetry, block, KrylovOptions(moments=2)) for block in (inputs, twice)
     )
     assert again.omega2 == pytest.approx(once.omega2, rel=1.0e-9)
 
@@ -113,14 +108,14 @@ def _measured(shell: SegmentShell, reduced: ReducedSegment, inputs: Array, rows:
 @pytest.mark.slow
 def test_a_basis_grows_until_it_meets_the_tolerance() -> None:
     """Reference: full solves at other frequencies, below twice the tolerance."""
-    shell = box_shell(0.5, supports=HELD)
-    inputs, end = _inputs(shell), shell.outline(10.0)
+    symmetry, inputs = _held()
+    shell = symmetry.shell
+    end = shell.outline(10.0)
     rows = np.column_stack([shell.row(end.mean_deflection()), shell.row(end.rotation())])
     sizes = []
     for tolerance in (1.0e-3, 1.0e-6, 1.0e-9):
-        reduced = reduce_segment(
-            SymmetryReduction(shell), inputs, KrylovOptions(tolerance=tolerance), outputs=rows
-        )
+        options = KrylovOptions(tolerance=tolerance)
+        reduced = reduce_segment(symmetry, inputs, options, outputs=rows)
         sizes.append(reduced.omega2.size)
         assert max(reduced.compliance_error, reduced.output_error) <= tolerance
         assert _measured(shell, reduced, inputs, rows) < 2.0 * tolerance
@@ -128,14 +123,18 @@ def test_a_basis_grows_until_it_meets_the_tolerance() -> None:
 
 
 def test_no_more_coordinates_than_are_allowed() -> None:
-    """The measured errors are larger with fewer coordinates."""
-    shell = box_shell(0.5, supports=HELD)
-    inputs = _inputs(shell)
-    few, more = (
-        reduce_segment(SymmetryReduction(shell), inputs, KrylovOptions(most=n)) for n in (12, 24)
-    )
+    """Measured errors are larger with fewer coordinates; a missed tolerance is refused."""
+    symmetry, inputs = _held()
+    few, more = (reduce_segment(symmetry, inputs, KrylovOptions(most=n)) for n in (12, 24))
     assert few.omega2.size <= 12 < more.omega2.size <= 24
     assert few.compliance_error > 10.0 * more.compliance_error
+    message = (
+        r"^a segment's reduction errs by \d\.\de-0\d with \d+ coordinates in one of its planes, "
+        r"and 1\.0e-09 is asked for; give a larger tolerance, or a coarser mesh, whose round-off "
+        r"is less$"
+    )
+    with pytest.raises(NumericsError, match=message):
+        reduce_segment(symmetry, inputs, KrylovOptions(tolerance=1.0e-9, most=20))
 
 
 def test_probes_excite_more_classes_than_inputs() -> None:
@@ -149,19 +148,6 @@ def test_probes_excite_more_classes_than_inputs() -> None:
     assert (np.diag(expected) > 0.0).all()
     assert found.probe_compliance == pytest.approx(expected, rel=1e-9, abs=1e-15)
     assert np.abs(found.shapes.T @ aside).max() < 1e-9 * np.abs(found.shapes.T @ up).max()
-
-
-def test_missed_tolerance_is_reported() -> None:
-    shell = box_shell(0.5, supports=HELD)
-    message = (
-        r"^a segment's reduction errs by \d\.\de-0\d with \d+ coordinates in one of its planes, "
-        r"and 1\.0e-09 is asked for; give a larger tolerance, or a coarser mesh, whose round-off "
-        r"is less$"
-    )
-    with pytest.raises(NumericsError, match=message):
-        reduce_segment(
-            SymmetryReduction(shell), _inputs(shell), KrylovOptions(tolerance=1.0e-9, most=20)
-        )
 
 
 def test_products_are_rounded_once() -> None:
@@ -196,30 +182,6 @@ def _everything(shell: SegmentShell) -> tuple[SymmetryReduction, list[Job]]:
     symmetry = SymmetryReduction(shell)
     force = np.random.default_rng(1).standard_normal((shell.num_dofs, 1)) * shell.free[:, None]
     return symmetry, symmetry.jobs(force, force, force[:, :0])
-
-
-@pytest.mark.parametrize(
-    ("section", "own"),
-    [
-        (BOX, {BREATHING: [0], ALONG_Z: [2, 4], ALONG_Y: [1, 5], TWISTING: [3]}),
-        (UNEQUAL, {SymmetryClass(1, 0): [0, 2, 4], SymmetryClass(-1, 0): [1, 3, 5]}),
-    ],
-    ids=["box", "unequal"],
-)
-def test_rigid_motions_belong_to_their_families(
-    section: Section, own: Mapping[SymmetryClass, list[int]]
-) -> None:
-    """Reference: analytic, translations along x, y and z, then rotations about them."""
-    shell = box_shell(0.5, section=section)
-    motions = shell.rigid_motions()
-    symmetry, jobs = _everything(shell)
-    assert [job.symmetry_class for job in jobs] == list(own)
-    for job in jobs:
-        found = symmetry.expand(job.shell(symmetry.cell).rigid_motions(), job.symmetry_class, 0)
-        expected = motions[:, own[job.symmetry_class]]
-        assert found.shape == expected.shape
-        combination = np.linalg.lstsq(expected, found, rcond=None)[0]
-        assert expected @ combination == pytest.approx(found, abs=1.0e-12)
 
 
 @pytest.mark.parametrize("section", [BOX, UNEQUAL], ids=["box", "unequal"])

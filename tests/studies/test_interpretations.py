@@ -2,7 +2,7 @@
 """Interpretations of the paper, the rule of thumb, and cheap rows of the validation."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,10 +14,8 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from protractile.beam_model.statics import static_state
 from protractile.dynamics.contact import PowerContact
-from protractile.runs.case import reading as case_file
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.kantorovich import Kantorovich
-from protractile.runs.case.schema import Case
 from protractile.runs.paper.verdicts import Judgement
 from protractile.runs.pipeline.statics import boom_with_play
 from studies import validation
@@ -26,7 +24,6 @@ from studies.interpretations import (
     ALL,
     JUDGED,
     MODELS,
-    PAPER,
     Finding,
     Interpretation,
     JudgedInterpretation,
@@ -45,16 +42,13 @@ from studies.rule_of_thumb import (
     flange_frequency,
     measure,
 )
+from studies.study import Verification
 from studies.working_load import Point
+from tests.runs.case_texts import shipped
 from tests.touching import contact_laws
 
 LITERAL = Interpretation(0.014, "literal", "as printed", 2.0)
 RESTORED = replace(LITERAL, stiffness="restored")
-
-
-@pytest.fixture
-def paper() -> Case:
-    return case_file.load(str(PAPER))
 
 
 def judged(one: Interpretation, peak: float = 0.17, **verdicts: Judgement) -> JudgedInterpretation:
@@ -71,20 +65,15 @@ def test_restored_laws_have_equal_stiffness_at_pad_forces(exponent: float) -> No
     stiffness = replace(RESTORED, exponent=exponent).contact_stiffness
     law = PowerContact(stiffness, exponent)
     depth = (2.5e4 / stiffness) ** (1.0 / exponent)
-    assert float(law.force(depth)) == pytest.approx(2.5e4)
     slope = (law.force(depth * 1.001) - law.force(depth * 0.999)) / (0.002 * depth)
     assert float(slope) == pytest.approx(1.0e9, rel=1e-6)
-
-
-def test_all_combinations_occur_once() -> None:
-    """Reference: 2 plays, 2 stiffnesses, 3 bases, 3 exponents; the literal stiffness by hand."""
+    # 2 plays, 2 stiffnesses, 3 bases, 3 exponents.
     assert len(set(ALL)) == len(ALL) == 36
-    for one in ALL:
-        assert (one.contact_stiffness == 1.01e6) == (one.stiffness == "literal")
 
 
-def test_every_model_of_the_case_has_the_interpretation(paper: Case) -> None:
-    case = Interpretation(0.028, "literal", "pinned", 1.5).case(paper, 0.5)
+def test_every_model_of_the_case_has_the_interpretation() -> None:
+    """Reference: by hand, a clearance of half the play; half as much load more."""
+    case = Interpretation(0.028, "literal", "pinned", 1.5).case(shipped("paper"), 0.5)
     assert [model.name for model in case.models] == list(MODELS)
     for model in case.models:
         (law,) = contact_laws(case, model)
@@ -124,35 +113,37 @@ def test_exponents_are_compared_within_their_group(peak: float, verdict: str) ->
     assert other.findings["S9"] == Finding("undecided", ())
 
 
-ROOT = Path(__file__).parents[2]
+@pytest.mark.parametrize(
+    ("rows", "count", "allowed"),
+    [
+        # External, analytic: Code_Aster V5.01.100 and 104.
+        (validation.released_slider, 4, 1e-4),
+        (validation.rubbing_mass, 4, 1e-4),
+        # Measured: DROPBEAR's moving roller.
+        (validation.moving_roller, 6, 0.012),
+        # External: 1.40 Hz of MathWorks' chart.
+        (validation.boom_lift, 1, 0.02),
+    ],
+)
+def test_cheap_rows_of_the_validation_hold(
+    rows: Callable[[], Iterable[Verification]], count: int, allowed: float
+) -> None:
+    """Reference: external and measured."""
+    errors = [verification.error for verification in rows()]
+    assert len(errors) == count
+    assert max(errors) < allowed
 
 
-@pytest.mark.parametrize("rows", [validation.released_slider, validation.rubbing_mass])
-def test_friction_follows_code_aster(rows: object) -> None:
-    """Reference: analytic and external, Code_Aster V5.01.100 and 104; steps leave 3e-5."""
-    verifications = list(rows())  # type: ignore[operator]
-    assert [
-        verification.what for verification in verifications if verification.error > 1.0e-4
-    ] == []
-
-
-def test_the_roller_stiffens_the_beam_as_measured() -> None:
-    """Reference: measured, DROPBEAR. Without roller 1.8751² and 0.2427, within 1 %."""
-    verifications = list(validation.moving_roller())
-    assert len(verifications) == 6
-    assert max(verification.error for verification in verifications) < 0.012
+def test_roller_and_tip_masses_change_frequencies() -> None:
+    """Reference: analytic. Without a roller 0.2427 of the mass counts; 1/f² of a lift is linear in
+    its mass.
+    """
     area = validation.BEAM_WIDTH * validation.BEAM_THICKNESS
     mass = validation.BEAM_STEEL.density * area * validation.BEAM_LENGTH
     bending = validation.BEAM_STEEL.youngs_modulus * area * validation.BEAM_THICKNESS**2 / 12.0
     stiffness = 3.0 * bending / validation.BEAM_LENGTH**3
     free = np.sqrt(stiffness / (0.2427 * mass + validation.ACCELEROMETERS)) / (2.0 * np.pi)
     assert validation.roller_frequency(1.0e-3) == pytest.approx(free, rel=0.02)
-
-
-def test_a_heavier_tip_slows_the_boom_lift() -> None:
-    """Reference: external, 1.40 Hz of MathWorks' chart, and statics: 1/f² is linear in the mass."""
-    (verification,) = validation.boom_lift()
-    assert verification.error < 0.02
     light, middle, heavy = (validation.lift_frequency(0.05, 250.0 * k) ** -2 for k in (1, 2, 4))
     assert (heavy - middle) / (middle - light) == pytest.approx(2.0, rel=0.01)
 
@@ -164,7 +155,7 @@ def test_a_coarse_membrane_is_near_nafems() -> None:
 
 
 def test_the_page_has_every_row() -> None:
-    page = (ROOT / "docs" / "validation.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "validation.md").read_text(encoding="utf-8")
     rows = [row.split(" | ") for row in re.findall(r"^\| (?!what|:--)(.*) \|$", page, re.M)]
     computed = [row for row in rows if len(row) == 9]
     assert {row[5] for row in computed} == {"✓"}
@@ -238,29 +229,15 @@ def test_the_rule_is_the_derivative_of_a_caught_fall(play: float) -> None:
     assert beam.tip_error(EULER, point, 3.0 * period * unit) == pytest.approx(expected, rel=1e-4)
 
 
-def test_without_play_the_phase_decides() -> None:
-    """Reference: analytic, half of the phase difference π n δ."""
-    beam = rule(0.0099, 0.0001)
-    missing_part = beam.missing_part(EULER)
-    assert beam.tip_error(EULER, Point(0.0, 1.0), 5.0) == pytest.approx(
-        missing_part * (1.0 + 0.5 * np.pi * 10.0)
-    )
-    assert beam.missing_part(PLAIN) == pytest.approx(
-        UNEVEN / (1.0 + UNEVEN) * missing_part, rel=0.02
-    )
-
-
 def test_the_first_boom_is_the_paper_s() -> None:
-    """Reference: external, Rusiński and Wyciślok 1997, section 4: mass per length and J."""
-    segments = build_boom(boom_case(Proportions())).segments
+    """Reference: external, Rusiński and Wyciślok 1997, section 4: mass per length and J; analytic,
+    Timoshenko's π/2 √(D/ρt)/b² for a flange as a plate on two supported sides.
+    """
+    case = boom_case(Proportions())
+    segments = build_boom(case).segments
     for segment, mass, second in zip(segments, (83.16, 55.07), (3.7986e-4, 2.1829e-4), strict=True):
         assert segment.mass_per_length == pytest.approx(mass, rel=0.01)
         assert segment.second_moment_of_area == pytest.approx(second, rel=0.01)
-
-
-def test_flange_frequency_equals_a_strip() -> None:
-    """Reference: analytic, Timoshenko's π/2 √(D/ρt)/b² for a plate on two supported sides."""
-    case = boom_case(Proportions())
     width, wall = 0.83 * 0.4945 / 1.634, 4.87e-3
     rigidity = 2.1e11 * wall**3 / (12.0 * (1.0 - 0.3**2))
     expected = 0.5 * np.pi * np.sqrt(rigidity / (7850.0 * wall)) / width**2

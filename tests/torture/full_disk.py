@@ -23,10 +23,12 @@ from protractile.runs.folder.cache import VARIABLE
 from protractile.runs.report.opengl import RenderingUnavailable
 from tests import at_once
 from tests.system.run_folder import write_coarse
-from tests.torture.shared_cache import Row
+from tests.torture.shared_cache import IN_THE_MAKING, Row, left
 
 _CHANGES = "mkdir", "rename", "replace", "link", "symlink", "write"
 _WRITES = set("wax+")
+# What does not depend on the time of a command.
+_SAME = {".nc", ".csv", ".toml", ".png", ".manifest"}
 
 
 class Disk:
@@ -144,21 +146,22 @@ def _torture(
     """Run a command beside the files of another one."""
     place.mkdir(exist_ok=True)
     assert _run(before)[0] == 0
-    old = _left(place)
+    old = left(place, _SAME)
     disk = Disk(place, float("inf"), 0)
     with disk.in_use():
         assert _run(command)[0] == 0
-    new = _left(place)
+    new = left(place, _SAME)
     for number in (errno.ENOSPC, errno.EIO):
         done = breaches = 0
         for last in range(0, disk.calls, max(1, disk.calls // tries)):
-            if _left(place) != old:
+            if left(place, _SAME) != old:
                 assert _run(before)[0] == 0
             with Disk(place, last, number).in_use():
                 status, said = _run(command)
             done += 1
-            whole = _left(place) == (new if status == 0 else old)
-            breaches += not whole or said != (status != 0)
+            whole = left(place, _SAME) == (new if status == 0 else old)
+            rests = any(place.rglob(f"*{IN_THE_MAKING}*"))
+            breaches += not whole or rests or said != (status != 0)
         what = f"of {disk.calls} calls: what was there, or all that is new, and one line"
         yield f"{name}, {os.strerror(number)}", done, breaches, what
 
@@ -190,14 +193,3 @@ def _run(command: Sequence[str]) -> tuple[object, int]:
             status = ended.code
             raise
     return status, said.getvalue().count("\n")
-
-
-def _left(place: Path) -> dict[str, bytes]:
-    """Return the files of a folder by their paths in it, without the content of timings."""
-    return {
-        str(path.relative_to(place)): path.read_bytes()
-        if path.suffix in {".nc", ".csv", ".toml", ".png", ".manifest"}
-        else b""
-        for path in place.rglob("*")
-        if path.is_file() and "points" not in path.parts
-    }

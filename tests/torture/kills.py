@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Commands that are killed at random moments and repeated, and commands that receive SIGTERM.
+"""Commands that are killed at random moments and repeated.
 
 Either the old files stay, or all new ones are complete. The next run writes the same files as an
 undisturbed run, to the last byte, and no others.
@@ -11,7 +11,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -19,10 +19,8 @@ from typing import Any
 import numpy as np
 
 from protractile.runs.process.ranks import launcher
-from tests.fuzz.contract import PROGRESS
 from tests.system.run_folder import ROOT, write_coarse
 from tests.torture.shared_cache import COMMAND, IN_THE_MAKING, Row, left
-from tests.unprinted import ONE_BLANK_FIGURE
 
 # The first moment of all is late in a command, where it writes.
 _SEED = 76
@@ -30,34 +28,18 @@ _COMMAND = sys.executable, "-c", COMMAND
 _RANKS = launcher(), "-n", "2", *_COMMAND
 
 # Models and what is varied of each command.
-_COLD_SHELL = (
-    *(sys.executable, "-c", f"{ONE_BLANK_FIGURE}\nfrom protractile.__main__ import main\nmain()\n"),
-    *("run", "case.toml", "--models", "shell"),
-)
 _BEAMS = "kantorovich-4,beam-fe-bonded"
-COMMANDS: Sequence[tuple[str, Sequence[str]]] = (
-    ("run", (*_COMMAND, "run", "case.toml", "--models", _BEAMS)),
-    (
-        "sweep",
-        (*_COMMAND, "sweep", "case.toml", "--models", _BEAMS, "--vary", "joint.play=0.01:0.014:3"),
-    ),
-    (
-        "run on two ranks",
-        (*_RANKS, "run", "case.toml", "--models", f"{_BEAMS},shell", "--mesh-size", "1"),
-    ),
-)
+COMMANDS: Mapping[str, Sequence[str]] = {
+    "run": (*_COMMAND, "run", "case.toml", "--models", _BEAMS),
+    "sweep": (*_COMMAND, "sweep", "case.toml", "--models", _BEAMS,
+              "--vary", "joint.play=0.01:0.014:3"),
+    "run on two ranks": (*_RANKS, "run", "case.toml", "--models", f"{_BEAMS},shell",
+                         "--mesh-size", "1"),
+}  # fmt: skip
 
 
-def rows(folder: Path, tries: int = 20) -> Iterator[Row]:
-    """Yield the rows of :func:`killed` and :func:`terminated`."""
-    yield from killed(folder, tries)
-    place = folder / "terminated"
-    place.mkdir()
-    yield terminated(place, tries)
-
-
-def killed(
-    folder: Path, tries: int, commands: Sequence[tuple[str, Sequence[str]]] = COMMANDS
+def rows(
+    folder: Path, tries: int = 20, commands: Mapping[str, Sequence[str]] = COMMANDS
 ) -> Iterator[Row]:
     """Yield the remains of killed commands; a breach is a loss, a residue or a difference.
 
@@ -67,7 +49,7 @@ def killed(
         commands: by their names.
     """
     random = np.random.default_rng(_SEED)
-    for name, command in commands:
+    for name, command in commands.items():
         place = folder / name
         place.mkdir()
         write_coarse(place, 0.1)
@@ -95,50 +77,6 @@ def killed(
         yield f"{name}, killed", tries, breaches, "what was there, then what an undisturbed leaves"
 
 
-def terminated(place: Path, tries: int, options: Sequence[str] = ("--mesh-size", "0.1")) -> Row:
-    """Send SIGTERM to runs that mesh and reduce a shell; a breach leaves files, or has another
-    message.
-
-    Args:
-        place: an empty folder.
-        tries: number of runs.
-        options: of each run.
-    """
-    command = *_COLD_SHELL, *options
-    random = np.random.default_rng(_SEED)
-    write_coarse(place, 0.1)
-    process, begin = _cold_shell(place, command), time.monotonic()
-    assert process.communicate()
-    assert process.returncode == 0
-    lasts = time.monotonic() - begin
-    breaches = 0
-    for moment in random.uniform(0.0, lasts, tries):
-        process = _cold_shell(place, command)
-        time.sleep(moment)
-        process.terminate()
-        lines = process.communicate()[1].decode().splitlines()
-        said = [line for line in lines if not PROGRESS.fullmatch(line)]
-        rests = [path for path in place.rglob("*") if IN_THE_MAKING in path.name]
-        interrupted = (128 + signal.SIGTERM, ["protractile: interrupted"])
-        # A run that has written everything may end, by itself or while Python takes leave.
-        whole = (place / "out").exists() and (process.returncode, said) in (
-            (0, []),
-            (-signal.SIGTERM, []),
-        )
-        breaches += not (whole or (process.returncode, said) == interrupted) or bool(rests)
-    return "a cold shell run, SIGTERM", tries, breaches, "one line, exit 143, nothing left"
-
-
-def _cold_shell(place: Path, command: Sequence[str]) -> subprocess.Popen[bytes]:
-    """Start a run of an uncached shell; return it when it listens to SIGTERM."""
-    for name in ("out", "cache"):
-        shutil.rmtree(place / name, ignore_errors=True)
-    process = _start(place, command, subprocess.PIPE)
-    while process.poll() is None and not listens(process):
-        time.sleep(0.005)
-    return process
-
-
 def listens(process: subprocess.Popen[Any]) -> bool:
     """Return whether a process has a handler for SIGTERM."""
     with suppress(OSError):
@@ -148,9 +86,7 @@ def listens(process: subprocess.Popen[Any]) -> bool:
     return False
 
 
-def _start(
-    place: Path, command: Sequence[str], err: int = subprocess.DEVNULL
-) -> subprocess.Popen[bytes]:
+def _start(place: Path, command: Sequence[str]) -> subprocess.Popen[bytes]:
     """Start a command in a session of its own."""
     (place / "tmp").mkdir(exist_ok=True)
     own = {"PYTHONPATH": str(ROOT), "PROTRACTILE_CACHE": "cache", "TMPDIR": str(place / "tmp")}
@@ -161,7 +97,7 @@ def _start(
         cwd=place,
         env=outside | own,
         stdout=subprocess.DEVNULL,
-        stderr=err,
+        stderr=subprocess.DEVNULL,
         start_new_session=True,
     )
 

@@ -4,7 +4,7 @@
 import os
 import subprocess
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 
 from tests.fuzz.contract import PROGRESS
@@ -22,40 +22,31 @@ COMMAND = f"{ONE_BLANK_FIGURE}\nfrom protractile.runs import cli\ncli.main()\n"
 
 
 def rows(folder: Path, tries: int = 3) -> Iterator[Row]:
+    """Yield the results of four runs of a shell on a cold cache, and of two in one folder."""
+    yield together(folder / "cold", tries, _SHELL, "abcd")
+    yield together(folder / "one", tries, _SHELL, "aa")
+
+
+def together(folder: Path, tries: int, models: Sequence[str], outs: str) -> Row:
     """Yield the results of simultaneous runs; a breach differs from a run alone, or prints.
 
     Args:
-        folder: an empty one to work in.
-        tries: tries of each.
+        folder: one that does not exist, to work in.
+        tries: tries of the runs, each on a cold cache.
+        models: options of the command line.
+        outs: a letter for the folder of each run.
     """
-    yield cold_cache(folder / "cold", tries)
-    yield one_folder(folder / "one", tries, _SHELL)
-
-
-def cold_cache(folder: Path, tries: int) -> Row:
-    """Yield the results of four runs of one shell."""
     alone = folder / "alone"
-    assert _finish([_start(_SHELL, alone, folder / "cache")])
+    assert _finish([_start(models, alone, folder / "cache")])
     breaches = 0
     for number in range(tries):
-        cache = folder / f"cache-{number}"
-        outs = [folder / f"out-{number}-{name}" for name in "abcd"]
-        silent = _finish([_start(_SHELL, out, cache) for out in outs])
-        same = all(left(out) == left(alone) for out in outs)
-        breaches += not (silent and same) or any(cache.glob(f".*{IN_THE_MAKING}*"))
-    return "four runs on a cold cache", tries, breaches, "each as alone, no scratch, not a word"
-
-
-def one_folder(folder: Path, tries: int, models: Sequence[str]) -> Row:
-    """Yield the results of two runs of the same models, which are options of the command line."""
-    alone, cache = folder / "alone", folder / "cache"
-    assert _finish([_start(models, alone, cache)])
-    breaches = 0
-    for number in range(tries):
-        out = folder / f"out-{number}"
-        silent = _finish([_start(models, out, cache) for _ in range(2)])
-        breaches += not (silent and left(out) == left(alone)) or any(folder.glob(".*"))
-    return "two runs in one folder", tries, breaches, "as alone, no scratch, not a word"
+        cache, places = folder / f"cache-{number}", [folder / f"{name}-{number}" for name in outs]
+        silent = _finish([_start(models, out, cache) for out in places])
+        same = all(left(out) == left(alone) for out in places)
+        rests = any(folder.glob(".*")) or any(cache.glob(f".*{IN_THE_MAKING}*"))
+        breaches += not (silent and same) or rests
+    name = f"{len(outs)} runs into {len(set(outs))} folders on a cold cache"
+    return name, tries, breaches, "as alone, no scratch, not a word"
 
 
 def _start(models: Sequence[str], out: Path, cache: Path) -> subprocess.Popen[str]:
@@ -75,12 +66,13 @@ def _finish(processes: Sequence[subprocess.Popen[str]]) -> bool:
     return silent and not any(process.returncode for process in processes)
 
 
-def left(folder: Path) -> dict[str, bytes]:
-    """Return the files of a folder without a sweep's points and the content of timings."""
+SAME = frozenset({".nc", ".csv", ".msh", ".vtu", ".pvd", ".toml"})
+
+
+def left(folder: Path, same: Collection[str] = SAME) -> dict[str, bytes]:
+    """Return the files of a folder without a sweep's points, with the content of some suffixes."""
     return {
-        str(path.relative_to(folder)): path.read_bytes()
-        if path.suffix in {".nc", ".csv", ".msh", ".vtu", ".pvd", ".toml"}
-        else b""
+        str(path.relative_to(folder)): path.read_bytes() if path.suffix in same else b""
         for path in folder.rglob("*")
         if path.is_file()
         and "points" not in path.relative_to(folder).parts

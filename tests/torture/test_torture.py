@@ -19,11 +19,12 @@ BEAM = "--models", "beam-fe-bonded"
 @pytest.mark.parametrize(
     ("rows", "count"),
     [
-        pytest.param(lambda folder: flipped_bits.rows(folder, 3), 2, id="flipped bits"),
-        pytest.param(lambda folder: full_disk.rows(folder, 2), 6, id="full disk"),
-        pytest.param(lambda folder: kills.killed(folder, 1, kills.COMMANDS[:1]), 1, id="killed"),
-        pytest.param(lambda folder: [shared_cache.one_folder(folder, 1, BEAM)], 1, id="one folder"),
+        (lambda folder: flipped_bits.rows(folder, 3), 2),
+        (lambda folder: full_disk.rows(folder, 2), 6),
+        (lambda folder: kills.rows(folder, 1, {"run": kills.COMMANDS["run"]}), 1),
+        (lambda folder: [shared_cache.together(folder, 1, BEAM, "aa")], 1),
     ],
+    ids=["flipped bits", "full disk", "killed", "one folder"],
 )
 def test_nothing_is_lost_or_wrong_and_believed(
     tmp_path: Path, rows: Callable[[Path], Iterable[Row]], count: int
