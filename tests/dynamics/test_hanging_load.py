@@ -43,49 +43,21 @@ def hoisted(
 
 
 def test_factor_of_a_rigid_boom() -> None:
-    """Reference: analytic, φ₂ = 1 + (v/g) √(k/m) of a load lifted at the speed v."""
-    load = HangingLoad(MASS, ROPE, GRAVITY, Stroke(3.0, SPEED), slack=0.0)
+    """Reference: analytic, φ₂ = 1 + (v/g) √(k/m) of a load lifted at the speed v after its slack. A
+    load on a rope of constant length rests.
+    """
+    load, slack = HangingLoad(MASS, ROPE, GRAVITY, Stroke(3.0, SPEED), slack=0.02), 0.02
     motion = hoisted(load, RIGID, 1.0, 1.0e-4)
     factor = motion.data["rope_force_peak"].values.max() / load.weight
     # The ground gives way by a hundredth of the rope's stretch.
     assert factor == pytest.approx(1.0 + SPEED / GRAVITY * np.sqrt(ROPE / MASS), rel=1e-3)
     raised = motion.data["rope_force"].values >= load.weight
-    assert motion.time[raised.argmax()] == pytest.approx(load.weight / ROPE / SPEED, abs=2e-3)
+    lifted = (load.weight / ROPE + slack) / SPEED
+    assert motion.time[raised.argmax()] == pytest.approx(lifted, abs=2e-3)
     assert motion.energy_residual < 1e-12
-
-
-def test_an_elastic_boom() -> None:
-    """Reference: other code, scipy's DOP853 of tip, load, rope and ground; order 2 in the step. A
-    hanging load rests with a rope of constant length.
-    """
-    root, slack, cosine = np.sqrt(500.0), 0.02, 0.5
-    system = modal_system([2.0e6 / 500.0], [-2000.0 / root], tip=[1.0 / root])
-    data = hoisted(HangingLoad(MASS, ROPE, GRAVITY), system, 0.2, 1.0e-3).data
+    data = hoisted(HangingLoad(MASS, ROPE, GRAVITY), mass_on_springs(), 0.2, 1.0e-3).data
     assert data["rope_force"].values == pytest.approx(np.full(201, MASS * GRAVITY), rel=1e-5)
-    assert data["tip"].values == pytest.approx(np.full(201, -12000.0 / 2.0e6), rel=1e-5)
-    load = HangingLoad(MASS, ROPE, GRAVITY, SCurve(0.8, 1.0), cosine, slack)
-
-    def rates(time: float, state: np.ndarray) -> np.ndarray:
-        tip, speed, z, rate = state
-        wound = float(load.hoist(np.array(time)))
-        rope = ROPE * max(cosine * tip - z + wound - slack, 0.0)
-        ground = 100.0 * ROPE * max(load.weight / (100.0 * ROPE) - z, 0.0)
-        pull = (-2000.0 - 2.0e6 * tip - cosine * rope) / 500.0
-        return np.array([speed, pull, rate, (rope + ground - load.weight) / MASS])
-
-    times = 1.0e-3 * np.arange(1001)
-    start = [-1.0e-3, 0.0, 0.0, 0.0]
-    exact = solve_ivp(
-        rates, (0.0, 1.0), start, "DOP853", times, rtol=1e-9, atol=1e-12, max_step=5e-4
-    ).y
-    errors = []
-    for step in (2.5e-4, 1.25e-4):
-        motion = hoisted(load, system, 1.0, step)
-        found = [motion.data[name].values for name in ("tip", "load_height")]
-        errors.append(max(np.abs(found[0] - exact[0]).max(), np.abs(found[1] - exact[2]).max()))
-        assert motion.energy_residual < 1e-12
-    assert errors[0] < 2e-5
-    assert errors[1] < 0.4 * errors[0]
+    assert data["tip"].values == pytest.approx(np.full(201, -MASS * GRAVITY / 2.0e6), rel=1e-5)
 
 
 def test_load_under_a_boom_at_constant_slewing_speed() -> None:

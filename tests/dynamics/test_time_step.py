@@ -308,24 +308,6 @@ def test_mass_between_two_stops_of_unlike_stiffness() -> None:
 
 
 @pytest.mark.parametrize(
-    ("stiffness", "exponent", "step"), [(1e8, 1.0, 1e-2), (1e10, 1.5, 1e-5), (1e13, 2.0, 1e-3)]
-)
-def test_bouncing_ball_keeps_its_height(stiffness: float, exponent: float, step: float) -> None:
-    """Reference: analytic. 1 kg falls 1 mm on a stiff floor repeatedly, and returns to the initial
-    height, even if the step does not resolve the impact of 10 to 100 µs.
-    """
-    floor = PowerContact(stiffness, exponent).lower().with_clearance(1.0e-3)
-    run = FixedStep(step)(Motion(one_mass(1.0, floor, force=-10.0), 3.0, 1e-3))
-    assert run.data.attrs["contact_changes"] > 60
-    tip = run.data["tip"].values
-    assert -1e-4 < tip[-200:].max() < 1e-12
-    assert tip.max() < 1e-12
-    flying = run.data["contact_energy"] == 0.0
-    total = run.data["kinetic_energy"] + 10.0 * (run.data["tip"])
-    assert np.abs(total.where(flying, drop=True)).max() < 1e-13
-
-
-@pytest.mark.parametrize(
     ("place", "speed", "first"), [(-0.1003, 1.0, 0.2003), (0.11, -0.1, 0.0), (0.0, 0.1, np.nan)]
 )
 def test_first_contact_late_at_once_or_never(place: float, speed: float, first: float) -> None:

@@ -20,7 +20,7 @@ from protractile.geometry.boom import (
     Support,
 )
 from protractile.geometry.box import BoxSection
-from protractile.geometry.contact_places import ContactInterval, ContactPair, Patch, pads
+from protractile.geometry.contact_places import ContactInterval, pads
 from protractile.geometry.fit import room
 from protractile.geometry.joint import Drive, PadSide
 from protractile.geometry.polygon import PolygonSection
@@ -157,25 +157,6 @@ def test_pads_lie_side_by_side_on_walls_of_their_width(steel: Material) -> None:
         padded(widths, replace(second, offset=0.03))
     with pytest.raises(BoomError, match=r"^joints\[0\].pads\[1\].width: must be above 0 and not a"):
         padded({**widths, "below": 0.15})
-
-
-def test_pads_of_a_flat_boom_lie_on_its_axis(paper_boom: Boom) -> None:
-    """Reference: by hand. Contact over a tenth of the overlap, or 30 mm from the corner inwards."""
-    (joint,) = paper_boom.joints
-    joint = replace(joint, friction=0.2, normal_forces=(4500.0, 5000.0))
-    boom = replace(paper_boom, joints=(joint,))
-    axis = (0.0, 0.0)
-    outer, inner = paper_boom.segments
-    tail, head = (
-        (ContactInterval.from_station(inner, x, 0.1), ContactInterval.from_station(outer, x, 0.1))
-        for x in joint.stations
-    )
-    assert pads(boom) == [
-        ContactPair(boom.stations[0], joint, 0, axis, axis, 1.0, "z", 4500.0, tail, None),
-        ContactPair(boom.stations[1], joint, 0, axis, axis, 1.0, "z", 5000.0, head, None),
-    ]
-    padded = replace(joint, pad=Pad(length=0.1, width=0.06, offset=0.03))
-    assert pads(replace(paper_boom, joints=(padded,)))[0].patch == Patch(9.0, 9.1, 0.03, 0.06)
 
 
 def test_pads_in_space_are_in_the_corners(spatial_boom: Boom) -> None:

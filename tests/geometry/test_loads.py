@@ -7,19 +7,15 @@ from math import cos, hypot, pi, radians, sin
 import numpy as np
 import pytest
 
-from protractile.dynamics.excitation import PiecewiseLinear, Step
+from protractile.dynamics.excitation import Step
 from protractile.geometry.axial import (
     AxialChange,
-    MovingForce,
     Thrust,
-    axial_force,
-    moving_force,
     with_compression,
 )
 from protractile.geometry.boom import BoomError, Collar, Diaphragm, Joint, PointMass, Segment
 from protractile.geometry.cylinder import Cylinder, EarthPoint
 from protractile.geometry.head import Head
-from protractile.geometry.joint import Carrier, Drive
 from protractile.geometry.load import Load, Moment, PartialLoad, Torque
 from protractile.geometry.support import Support
 from protractile.geometry.wind import wind_direction, wind_loads
@@ -100,41 +96,6 @@ def test_axial_forces_and_masses_soften_a_mode() -> None:
     # The force ends at the foot, at 1 m.
     bent = 900.0 * (np.pi / 8.0) ** 2 * (3.5 - np.sin(0.25 * np.pi) / (0.5 * np.pi))
     assert found == pytest.approx(np.array([[bent + 0.75 * 60.0]]), rel=1e-5)
-
-
-@pytest.mark.parametrize(
-    ("carrier", "locked", "place"),
-    [("inner", None, (0, 6.0, 1)), ("inner", 7.0, (0, 7.0, 1)), ("outer", 6.0, (1, 6.0, -1)),
-     ("outer", 5.0, None)],
-)  # fmt: skip
-def test_drawn_out_a_force_goes_along(
-    carrier: Carrier, locked: float | None, place: tuple[int, float, int] | None
-) -> None:
-    """Reference: other code path, the forces in the boom built at this extension."""
-    ways = PiecewiseLinear([0.0, 1.0], [0.0, 1.0])
-    drive = Drive(ways, ("inner", "outer"), 0.0, carrier)
-    joint = replace(JOINT, drive=drive, locked_at=locked)
-    own = with_compression(segments(), [joint], [Thrust(1, 14.0, 1000.0)], gravity=5.0)
-    found = moving_force(own, [joint], 0)
-    if place is None:
-        assert found is None
-    else:
-        assert found is not None
-        assert found == MovingForce(*place, found.force)
-        assert found.force == pytest.approx(1000.0 + 40.0 * LIGHT, rel=1e-9)
-    for way in (1.0, -1.0):
-        along = locked + way if carrier == "inner" and locked is not None else locked
-        there = replace(JOINT, locked_at=along)
-        drawn, thrust = segments(6.0 + way), Thrust(1, 14.0 + way, 1000.0)
-        expected = with_compression(drawn, [there], [thrust], gravity=5.0)
-        for number, moved in ((0, 0.0), (1, way)):
-            x = np.linspace(own[number].start, own[number].end, 97)[1:-1] + 1e-3
-            here = own[number].compression(x)
-            if way > 0.0:
-                here = axial_force(own, [joint], number, x, np.array([0.3, way]))[1]
-            elif found is not None and found.segment == number:
-                here = here + found.change(x, np.array(way))
-            assert here == pytest.approx(expected[number].compression(x + moved), abs=1e-6)
 
 
 PRESSURE, FACTORS = 250.0, (1.5, 1.3)

@@ -109,7 +109,7 @@ def test_a_box_of_unequal_flanges() -> None:
 def test_boxes_of_the_paper(
     ratio: float, outer_mm: tuple[float, ...], inner_mm: tuple[float, ...]
 ) -> None:
-    """Reference: other code, to its four digits. A, J and 2Δ are exact to round-off."""
+    """Reference: other code, to its four digits. 2Δ is exact to round-off."""
     areas, second_moments = (83.16 / 7850.0, 55.07 / 7850.0), (3.7986e-4, 2.1829e-4)
     outer = infer_outer_section(areas[0], second_moments[0], ratio)
     inner = infer_inner_section(areas[1], second_moments[1], outer, 7.0e-3)
@@ -117,10 +117,7 @@ def test_boxes_of_the_paper(
         assert (1e3 * box.height, 1e3 * box.width) == pytest.approx(printed[:2], abs=0.1)
         assert 1e3 * box.flange == pytest.approx(printed[2], abs=0.006)
         assert box.web == box.flange
-    for box, area, moment in zip((outer, inner), areas, second_moments, strict=True):
-        assert numbers(box, *PROPERTIES[:2]) == pytest.approx([area, moment], rel=1e-12)
     assert free_room(outer, inner)[0] == pytest.approx(14.0e-3, rel=1e-12, abs=0.0)
-    assert free_room(outer, inner)[1] > 0.0
 
 
 @settings(max_examples=20)
@@ -206,6 +203,15 @@ def test_a_rectangle_has_the_numbers_of_a_box() -> None:
     assert str(closed_polygon(polygon.corners, polygon.thicknesses)) == str(box)
 
 
+def test_many_plates_are_a_tube() -> None:
+    """Reference: analytic, a thin tube: J = π r³ t, torsion 2 π r³ t, shear area π r t, to 1e-4."""
+    radius, wall = 0.2, 1.0e-4
+    tube = regular(240, 2.0 * radius * np.sin(np.pi / 240), wall)
+    expected = pi * radius * wall * np.array([radius**2, 2.0 * radius**2, 1.0])
+    found = numbers(tube, "second_moment_of_area", "torsion_constant", "shear_area")
+    assert found == pytest.approx(expected.tolist(), rel=5e-4)
+
+
 @pytest.mark.parametrize("name", ["trapezoid", "hexagon", "u"])
 def test_properties_are_those_of_the_outline_less_the_hole(name: str) -> None:
     """Reference: analytic, moments of the polygons of the walls' outer and inner surfaces."""
@@ -220,7 +226,7 @@ def test_properties_are_those_of_the_outline_less_the_hole(name: str) -> None:
 
 @pytest.mark.parametrize("section", [*ALL.values(), UNEQUAL], ids=str)
 def test_on_its_side_and_wherever_its_corners_begin(section: Section) -> None:
-    """Reference: analytic, y and z exchanged; another first corner gives the same plates."""
+    """Reference: analytic, y and z exchanged; other first corners and origins change nothing."""
     side = section.turned()
     names = "shear_area", "area", "torsion_constant", "polar_second_moment_of_area"
     others = "lateral_shear_area", *names[1:]
@@ -232,10 +238,11 @@ def test_on_its_side_and_wherever_its_corners_begin(section: Section) -> None:
     assert side.turned() == section
     if isinstance(section, BoxSection):
         return
-    corners = (*section.corners[2:], *section.corners[:2])
+    corners = tuple((y + 0.3, z - 0.2) for y, z in (*section.corners[2:], *section.corners[:2]))
     shifted = PolygonSection(corners, (*section.thicknesses[2:], *section.thicknesses[:2]))
     walls = *shifted.thicknesses[-2::-1], shifted.thicknesses[-1]
     for same in (shifted, PolygonSection(corners[::-1], walls)):
+        assert same.mirrors == section.mirrors
         for mine, its in zip(same.plates, section.plates, strict=True):
             assert (mine.name, mine.thickness) == (its.name, its.thickness)
             assert (*mine.start, *mine.end) == pytest.approx((*its.start, *its.end), abs=1e-15)
