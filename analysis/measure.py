@@ -91,14 +91,18 @@ def measure_boom(states: States) -> Iterator[Measured]:
     for number, cylinder in enumerate(boom.cylinders, start=1):
         part = "cylinder" if len(boom.cylinders) == 1 else f"cylinder {number}"
         force, at = states.observed(force_name(number)), (time, cylinder.x)
+        limits = cylinder.resistance(), cylinder.resistance(pulls=True)
         if cylinder.spread == 0.0:
-            yield _single("cylinder_force", part, force, *at, limit=cylinder.resistance)
+            forces = np.maximum(force, 0.0), np.minimum(force, 0.0)
+            for values, limit in zip(forces, limits, strict=True):
+                yield _single("cylinder_force", part, values, *at, limit=limit)
             continue
         apart = states.observed(difference_name(number))
         yield _single("cylinder_force", part, force, *at)
         yield _single("cylinder_force_difference", part, apart, *at)
-        larger, limit = 0.5 * (np.abs(force) + np.abs(apart)), cylinder.resistance
-        yield _single("larger_cylinder_force", part, larger, *at, limit=limit and 0.5 * limit)
+        for sign, limit in zip((1.0, -1.0), limits, strict=True):
+            larger = np.maximum(0.5 * (sign * force + np.abs(apart)), 0.0)
+            yield _single("larger_cylinder_force", part, larger, *at, limit=limit and 0.5 * limit)
     if (data := states.recorded) is not None:
         if "rope_force_peak" in data:
             yield _single("rope_force", "rope", data["rope_force_peak"].values, time)

@@ -110,7 +110,8 @@ class Cylinder:
     one cylinder is in the middle"""
     capacity: Annotated[Positive, In("N")] | None = None
     """the characteristic resistance in N to its force, for proofs; of two cylinders their sum;
-    unless given, the smaller one of pressure times area of the bore and of the buckling force"""
+    unless given, if it pushes the smaller one of pressure times area of the bore and of the
+    buckling force, and if it pulls the pressure times the area of the bore without the rod"""
     closed: Annotated[Positive, In("m")] | None = None
     """the length in m from pin to pin of the retracted cylinder"""
     open: Annotated[Positive, In("m")] | None = None
@@ -149,10 +150,15 @@ class Cylinder:
         """The length in m by which the cylinder is extended; None without ``closed``."""
         return None if self.closed is None else self.length - self.closed
 
-    @property
-    def piston_area(self) -> float | None:
-        """The area in m² of the pistons of all cylinders; None without ``bore``."""
-        return None if self.bore is None else 0.25 * pi * self.bore**2 * self.count
+    def oil_area(self, pulls: bool = False) -> float | None:
+        """Return the area in m² under oil of all cylinders that push, or that pull.
+
+        It is that of the pistons, less that of the rods if they pull; None without their diameters.
+        """
+        if self.bore is None or (pulls and self.rod is None):
+            return None
+        rod = self.rod if pulls and self.rod else 0.0
+        return 0.25 * pi * (self.bore**2 - rod**2) * self.count
 
     @property
     def axial_stiffness(self) -> float:
@@ -163,11 +169,12 @@ class Cylinder:
         """
         if self.stiffness is not None:
             return self.stiffness
-        assert self.piston_area is not None
+        pistons = self.oil_area()
+        assert pistons is not None
         assert self.rod is not None
         assert self.closed is not None
         rods = 0.25 * pi * self.rod**2 * self.count
-        column = max(self.length - self.closed, 0.0) / (self.oil_modulus * self.piston_area)
+        column = max(self.length - self.closed, 0.0) / (self.oil_modulus * pistons)
         return 1.0 / (column + self.closed / (_ROD_MODULUS * rods))
 
     @property
@@ -183,12 +190,18 @@ class Cylinder:
         second_moment = pi * self.rod**4 / 64.0
         return self.count * pi**2 * _ROD_MODULUS * second_moment / self.length**2
 
-    @property
-    def resistance(self) -> float | None:
-        """The characteristic resistance in N: ``capacity``, or by pressure and buckling."""
+    def resistance(self, pulls: bool = False) -> float | None:
+        """Return the characteristic resistance in N of cylinders that push, or that pull.
+
+        It is ``capacity``, or that by pressure, and by buckling if they push. Without the data for
+        pulling it is that for pushing.
+        """
         if self.capacity is not None:
             return self.capacity
-        by_pressure = self.pressure and self.piston_area and self.pressure * self.piston_area
+        area = self.oil_area(pulls)
+        by_pressure = self.pressure and area and self.pressure * area
+        if pulls and by_pressure is not None:
+            return by_pressure
         known = [force for force in (by_pressure, self.buckling_force) if force is not None]
         return min(known, default=None)
 
@@ -256,7 +269,7 @@ class Cylinder:
         if self.stiffness is None:
             for key in ("bore", "rod", "closed"):
                 if getattr(self, key) is None:
-                    what = "missing; the stiffness needs it beside bore, rod and closed, or give it"
+                    what = "missing; give bore, rod and closed, or the stiffness"
                     raise BoomError(f"{where}.{key}", what)
         if self.bore is not None and self.rod is not None and self.rod >= self.bore:
             what = f"must be below the bore of {self.bore:g} m, got {self.rod:g} m"

@@ -359,8 +359,8 @@ def _cylinders(state: StaticState, system: System) -> Table:
             if cylinder.closed and cylinder.open:
                 said += f" of its stroke of {system.text(cylinder.open - cylinder.closed, 'm')}"
             notes.append(f"{said}.")
-        if cylinder.piston_area is not None:
-            pressure = amount(force / cylinder.piston_area, "Pa")
+        if (area := cylinder.oil_area(pulls=force < 0.0)) is not None:
+            pressure = amount(abs(force) / area, "Pa")
             notes.append(f"Oil pressure of cylinder {k}: {pressure}.")
     lengths = (f"length\n{metre}", ".5g"), (f"lever arm\n{metre}", ".5g")
     columns = "cylinder of", f"x\n{metre}", *lengths, ("force", ".4g", "kN")

@@ -163,7 +163,7 @@ def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Itera
     if "pad" in requested_proofs and boom.joints and all(row.limit is None for row in pads):
         yield "Pad pressure is not proved: no pad has an `allowable_pressure`."
     if "cylinder" in requested_proofs and any(
-        cylinder.resistance is None for cylinder in boom.cylinders
+        cylinder.resistance() is None for cylinder in boom.cylinders
     ):
         yield "Cylinder force is not proved: a cylinder has no `capacity`."
     pins = [segment.foot.pin for segment in boom.segments if segment.foot is not None]

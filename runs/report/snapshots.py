@@ -34,7 +34,7 @@ SNAPSHOTS = "snapshots"
 # Animation: animated duration of the run in s, for a crane the whole run; number of frames;
 # duration on the screen in s; size factor of the sheet.
 ANIMATION = "motion.gif"
-ANIMATED, FRAMES, SHOWN, SMALL = 2.5, 30, 5.0, 0.6
+ANIMATED, FRAMES, SHOWN, SMALL = 2.5, 40, 5.0, 0.6
 
 # Parts of captions: what a picture shows; meaning of an arrow if a station has several contact
 # points.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Beams by series and by elements: functions, supports, statics, frequencies."""
+"""Beams by series and by elements, also tapered: supports, statics, frequencies."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -8,23 +8,37 @@ from functools import partial
 
 import numpy as np
 import pytest
-from scipy.linalg import eigh
+from scipy.integrate import quad
 
-from protractile.beam_model.component import Component
+from protractile.beam_model.boom_modes import critical_factor
+from protractile.beam_model.component import Component, SegmentModel
 from protractile.beam_model.elements import Theory
 from protractile.beam_model.finite_element import finite_element_segment, finite_element_segments
-from protractile.beam_model.kantorovich import Base, kantorovich_bending
+from protractile.beam_model.kantorovich import (
+    Base,
+    kantorovich_bending,
+    kantorovich_segments,
+    rigid_segment,
+)
 from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.excitation import Step
 from protractile.geometry.arrays import Array
+from protractile.geometry.axial import with_compression
 from protractile.geometry.boom import Boom, BoomError, PointMass, Segment, Stop, Support
+from protractile.geometry.box import BoxSection
+from protractile.geometry.load import Load
 from protractile.geometry.observation import Observation
+from protractile.runs.case.kinds.finite_element import BeamElements
+from studies import taper
+from studies.reference_models.statics import static_response
 from tests.beam_model.exact import (
     CLAMPED_FREE,
     FREE_FREE,
     PINNED_FREE,
     PINNED_PINNED,
+    STEEL,
     OverhangingBeam,
     angular_frequencies,
     beam,
@@ -76,21 +90,11 @@ def shear_stiffness(segment: Segment, theory: Theory) -> float:
     return 2.0 * segment.section.height * segment.section.web * 2.1e11 / 2.6
 
 
-def test_frequencies_converge_at_order_four() -> None:
-    """Reference: analytic βL, and another mesh without the node at 1 mm from a mass."""
-    segment = beam(supports=(3.0,))
-    expected = angular_frequencies(segment, PINNED_FREE)
-    errors = np.array([
-        frequencies(elastic(segment, 5.0 / count, (), "euler-bernoulli", False))[:3] / expected - 1
-        for count in (8, 16, 32)
-    ])  # fmt: skip
-    assert np.log2(errors[1] / errors[2]) == pytest.approx(4.0, abs=0.1)
-    assert 0.0 < errors[-1].max() < 1.0e-5
+def test_a_node_beside_a_mass_changes_nothing() -> None:
+    """Reference: another mesh, without the node at 1 mm from the mass."""
     segment = beam(masses=(PointMass(5.001, 20.0),))
     alone, beside = (elastic(segment, 0.3, x, "euler-bernoulli", False) for x in ((), (5.0,)))
     np.testing.assert_allclose(frequencies(beside)[:4], frequencies(alone)[:4], rtol=1e-5)
-    squares = eigh(beside.stiffness, beside.mass, eigvals_only=True)
-    np.testing.assert_allclose(squares[:2], 0.0, atol=1e-9 * squares[2])
 
 
 @pytest.mark.parametrize("rotary_inertia", [False, True])
@@ -220,29 +224,6 @@ def test_rigid_supports(
     np.testing.assert_allclose(frequencies(model_of(segment))[:3], expected, rtol=3e-6)
 
 
-def tip_frequencies(segment: Segment, hold: Callable[[float], float]) -> Array:
-    """Return ω of a cantilever with the dynamic stiffness ``hold(ω)`` in N/m at its end.
-
-    It is −ω² M for a mass, k for a spring.
-
-    1 + cos βL cosh βL = hold / (E J β³) · (cos βL sinh βL − sin βL cosh βL)
-    """
-    stiffness, length = segment.bending_stiffness, segment.length
-
-    def omega(beta: float) -> float:
-        return beta**2 * float(np.sqrt(stiffness / segment.mass_per_length))
-
-    def defect(number: float) -> float:
-        beta = number / length
-        cosine, sine = np.cos(number), np.sin(number)
-        # Both sides over cosh, which grows without bound.
-        turned = cosine * np.tanh(number) - sine
-        share = hold(omega(beta)) / (stiffness * beta**3)
-        return float(1.0 / np.cosh(number) + cosine - share * turned)
-
-    return np.array([omega(root / length) for root in roots(defect, 0.1, 12.0)])
-
-
 @KINDS
 def test_rotary_inertia_of_two_pinned_ends(model_of: Build) -> None:
     """Reference: analytic, Rayleigh: ω² = (E J k⁴/m̄)/(1 + I_p k²/m̄)."""
@@ -264,16 +245,16 @@ def test_viscous_damping_acts_as_mass_does(model_of: Build) -> None:
 
 
 @KINDS
-@pytest.mark.parametrize(("spring", "mass"), [(2.0e7, 0.0), (0.0, 900.0)], ids=["spring", "mass"])
-def test_a_spring_or_a_mass_at_the_end_of_a_cantilever(
-    model_of: Build, spring: float, mass: float
-) -> None:
-    """Reference: analytic, the transcendental equation of a clamped beam on an end spring."""
-    clamp, held = Support(3.0, "clamped"), Support(8.0, stiffness=spring or None)
-    masses = (PointMass(8.0, mass),) if mass else ()
-    segment = beam(supports=(clamp, held) if spring else (clamp,), masses=masses)
-    expected = tip_frequencies(segment, lambda omega: spring - mass * omega**2)
-    np.testing.assert_allclose(frequencies(model_of(segment))[:3], expected[:3], rtol=1e-6)
+def test_a_spring_or_a_mass_at_the_end_of_a_cantilever(model_of: Build) -> None:
+    """Reference: analytic, 3 E J/L³ beside a spring, and under a mass that outweighs the beam."""
+    clamp, mass = Support(3.0, "clamped"), 1.0e9
+    segment = beam(supports=(clamp,), masses=(PointMass(8.0, mass),))
+    own = 3.0 * segment.bending_stiffness / segment.length**3
+    assert frequencies(model_of(segment))[0] == pytest.approx(np.sqrt(own / mass), rel=1e-6)
+    held = model_of(beam(supports=(clamp, Support(8.0, stiffness=2.0e7))))
+    row = held.at(8.0)
+    given = row @ np.linalg.solve(held.stiffness, row)
+    assert given == pytest.approx(1.0 / (own + 2.0e7), rel=1e-6)
 
 
 @KINDS
@@ -308,3 +289,83 @@ def test_a_stop_holds_tip_up(paper_boom: Boom, paper_law: PowerContact) -> None:
     np.testing.assert_array_equal(system.rows[2], system.observers["tip"].row)
     law = system.laws[2]
     assert law.force(np.array([-6.0e-3, -4.0e-3, 6.0e-3])) == pytest.approx([-2.0e5, 0.0, 0.0])
+
+
+ROOT = BoxSection(height=0.8, width=0.5, flange=0.02, web=0.012)
+HEAD = BoxSection(height=0.3, width=0.35, flange=0.01, web=0.008)
+LENGTH = BeamElements(name="beam", kind="finite-element").element_length
+
+
+def arm(*supports: Support) -> Segment:
+    others = {"head_section": HEAD, "supports": supports or (Support(0.0, "clamped"),)}
+    return Segment.of_section("arm", 0.0, 8.0, STEEL, ROOT, **others)
+
+
+def default_elements(boom: Boom, theory: Theory) -> list[SegmentModel]:
+    return finite_element_segments(boom, LENGTH, theory, rotary_inertia=False)
+
+
+@pytest.mark.parametrize("theory", THEORIES)
+def test_default_elements_are_near_the_cone(theory: Theory) -> None:
+    """Reference: analytic, a cone's tip, frequency, buckling (Kirchhoff 1879, Dinnik 1929)."""
+    boom = taper.arm(0.1 * taper.critical())
+    plain = replace(boom, segments=taper.arm().segments)
+    system = gap_system(plain, default_elements(plain, theory))
+    (load,) = system.excitations
+    tip = system.observers["tip"].row @ static_response(system, load.load)
+    assert tip == pytest.approx(taper.tip(theory == "timoshenko"), rel=1e-4)
+    if theory == "euler-bernoulli":
+        assert system.frequencies[0] == pytest.approx(taper.frequency(), rel=1e-4)
+        factor = critical_factor(boom, default_elements(boom, theory))
+        assert factor == pytest.approx(10.0, rel=1e-4)
+
+
+def local(x: float) -> BoxSection:
+    """Return the section at x in m."""
+    ends = ((box.height, box.width, box.flange, box.web) for box in (ROOT, HEAD))
+    return BoxSection(*(a + x / 8.0 * (b - a) for a, b in zip(*ends, strict=True)))
+
+
+def test_mass_equals_the_mass_of_the_plates() -> None:
+    """Reference: by hand, ∫ A dx = 8 (A_0 + 4 A_m + A_1)/6 and its centroid, in all models."""
+    sections = [ROOT, BoxSection(0.55, 0.425, 0.015, 0.01), HEAD]
+    areas = [section.area for section in sections]
+    mass = 7850.0 * 8.0 * (areas[0] + 4.0 * areas[1] + areas[2]) / 6.0
+    middle = 8.0 * (2.0 * areas[1] + areas[2]) / (areas[0] + 4.0 * areas[1] + areas[2])
+    segment = arm(Support(0.0, stiffness=1e6), Support(8.0, stiffness=1e6))
+    felt = Load(0, "z", segment.mass_per_length, None, Step(), inertial=True)
+    boom = Boom((segment,), (), (felt,))
+    for models in (
+        default_elements(boom, "timoshenko"),
+        kantorovich_segments(boom, [10], "complete", rotary_inertia=True),
+        [rigid_segment(segment)],
+    ):
+        system = gap_system(boom, models)
+        resting = static_response(system, system.excitations[0].load)
+        # 1 m/s² on springs of 1e6 N/m: the tip's carries m g x_m/8.
+        tip = system.observers["tip"].row @ resting
+        assert tip == pytest.approx(1e-6 * mass * middle / 8.0, rel=1e-5)
+
+
+def test_axial_weights_follow_the_taper() -> None:
+    """Reference: by hand. The foot carries the whole upright boom, the midpoint the upper half."""
+    (pressed,) = with_compression([arm()], [], [], gravity=10.0)
+    upper = 4.0 * (BoxSection(0.55, 0.425, 0.015, 0.01).area + HEAD.area) / 6.0
+    upper += 4.0 * 4.0 * BoxSection(0.425, 0.3875, 0.0125, 0.009).area / 6.0
+    places = pressed.compression(np.array([1e-12, 4.0]))
+    assert places[0] == pytest.approx(10.0 * 8.0 * pressed.mass_per_length, rel=1e-9)
+    assert places[1] == pytest.approx(7850.0 * 10.0 * upper, rel=1e-9)
+
+
+def test_twist_follows_the_local_constant() -> None:
+    """Reference: analytic, ∫ dx/(G J_t) under 1 N m at the free end, in series and elements."""
+    soft, _ = quad(lambda x: 1.0 / (STEEL.shear_modulus * local(x).torsion_constant), 0.0, 8.0)
+    boom = Boom((arm(),), ())
+    for models in (
+        default_elements(boom, "timoshenko"),
+        kantorovich_segments(boom, [12], "complete", rotary_inertia=True),
+    ):
+        twist = models[0].components["twist"]
+        row = twist.at(8.0)
+        # A linear element has the stiffness of its middle: 1e-4 of the whole.
+        assert row @ np.linalg.solve(twist.stiffness, row) == pytest.approx(soft, rel=1e-5)

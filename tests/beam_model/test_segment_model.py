@@ -15,9 +15,8 @@ from protractile.dynamics.contact import DryFriction, PowerContact
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, Joint, Support
+from protractile.geometry.boom import Boom, Support
 from protractile.geometry.load import Load
-from protractile.geometry.observation import Observation
 from studies.reference_models.statics import static_response
 from tests.beam_model.exact import (
     STEEL,
@@ -61,28 +60,6 @@ def test_bonded_series_converges_to_the_bonded_elements(
     found = gap_system(paper_boom.bonded, beam_series(paper_boom, (12, 12), "complete"))
     np.testing.assert_allclose(found.frequencies[:4], beams.frequencies[:4], rtol=8e-4)
     assert rest(found) == pytest.approx(rest(beams), rel=7e-4, abs=0.0)
-
-
-def test_a_boom_of_three_has_the_rows_of_each_joint(paper_boom: Boom) -> None:
-    """Reference: by construction."""
-    outer, middle = paper_boom.segments
-    (joint,) = paper_boom.joints
-    last = replace(middle, name="last", start=17.5, end=27.0, section=None)
-    second = replace(joint, outer=1, inner=2, stations=(17.5, 19.0))
-    boom = Boom((outer, middle, last), (joint, second))
-    models = finite_element_segments(boom, 0.5, "euler-bernoulli", False)
-    system = gap_system(touching(boom, [LAW, LATERAL_LAW]), models)
-    assert list(system.laws) == [LAW, LAW, LATERAL_LAW, LATERAL_LAW]
-    assert list(system.stations) == [9.0, 10.0, 17.5, 19.0]
-    assert (system.omega2 == 0.0).sum() == 4
-    # Bonded, both segments of a joint deflect alike at its stations.
-    seen = [(k, x) for one in boom.joints for x in one.stations for k in (one.outer, one.inner)]
-    observations = [Observation(f"{k} {x}", k, x) for k, x in seen]
-    bonded = gap_system(replace(boom, observations=observations).bonded, models)
-    deflections = rest(bonded)
-    found = [deflections[one.name] for one in observations]
-    assert found[1::2] == pytest.approx(found[::2], rel=1e-6)
-    assert found[::2] == sorted(found[::2])
 
 
 def test_bonded_halves_have_the_frequencies_of_the_whole(paper_boom: Boom) -> None:
@@ -241,17 +218,3 @@ def test_friction_rubs_in_the_plane_of_contact(paper_boom: Boom) -> None:
         pressed = system.rows[contact]
         assert [pressed @ up, pressed @ aside] == pytest.approx(along_z, abs=1e-9)
         assert [row @ aside, row @ up] == pytest.approx(along_z, abs=1e-9)
-
-
-def test_bonded_in_space_nothing_moves_between_the_segments(spatial_boom: Boom) -> None:
-    """Reference: analytic, frequencies of the flat boom, the boom on its side, and twist."""
-    boom = spatial_boom
-    system = gap_system(boom.bonded, beams(boom))
-    joint = Joint(0, 1, (9.0, 10.0), play=0.0)
-    flat = Boom(boom.segments, (joint,))
-    side = Boom(tuple(s.turned() for s in boom.segments), (joint,))
-    bending = [gap_system(b.bonded, beams(b)).omega2 for b in (flat, side)]
-    for omega2 in np.concatenate(bending):
-        assert np.abs(system.omega2 / omega2 - 1.0).min() < 1e-9
-    # And nine twists of each segment of ten elements.
-    assert system.num_modes == sum(b.size for b in bending) + 2 * 9

@@ -72,21 +72,10 @@ def _boom(random: Random) -> object:
     """Return the difference of two models of a boom of two boxes."""
     drawn = partial(_drawn, random)
     steel = pt.Material(**drawn(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0))
-    boxes = (
-        pt.BoxSection(**drawn(height=0.40, width=0.30, flange=0.008, web=0.006)),
-        pt.hexagon(**drawn(height=0.36, width=0.26, flat=0.1, top=0.006, bottom=0.006, web=0.006)),
-    )
-    arm = pt.Segment.of_section(
-        **drawn(name="arm", start=0.0, end=8.4, material=steel, section=boxes[0]),
-        supports=(pt.Support(**drawn(x=0.0, kind="clamped")),),
-    )
-    fly = pt.Segment.of_section(
-        **drawn(name="fly", start=6.0, end=14.0, material=steel, section=boxes[1], load=-500.0),
-        masses=(pt.PointMass(**drawn(x=12.0, mass=50.0)),),
-    )
+    arm = pt.BoxSection(**drawn(height=0.40, width=0.30, flange=0.008, web=0.006))
+    fly = pt.hexagon(**drawn(height=0.36, width=0.26, flat=0.1, top=0.006, bottom=0.006, web=0.006))
     law = pt.PowerContact(**drawn(stiffness=1e9, exponent=1.2, damping=0.0))
     stations = random.choice(((6.5, 7.5), (6.6, 7.4), ("tail", "head"), (6.5,), (), 6.5))
-    joint = pt.Joint(**drawn(outer="arm", inner="fly", stations=stations, play=0.01, contact=law))
     histories: Mapping[Any, Mapping[str, Any]] = {
         pt.Step: {}, pt.Ramp: {"duration": 0.01}, pt.Sine: {"frequency": 2.0, "phase": 0.1},
         pt.PiecewiseLinear: {"times": [0.0, 0.1], "values": [0.0, 1.0]},
@@ -94,19 +83,23 @@ def _boom(random: Random) -> object:
     }  # fmt: skip
     history, numbers = random.choice(list(histories.items()))
     load = {"direction": "z", "magnitude": -100.0, "history": history(**drawn(**numbers))}
-    parts: Mapping[str, tuple[Any, Mapping[str, Any]]] = {
-        "loads": (pt.Load, {"segment": "fly", "x": 13.0, **load}),
-        "cylinders": (
-            pt.Cylinder, {"segment": "arm", "x": 2.0, "ground": (0.5, -1.0), "stiffness": 1e7},
-        ),
-        "stops": (pt.Stop, {"segment": "fly", "x": 13.0, "play": 0.1, "contact": law}),
-    }  # fmt: skip
-    more = {
-        name: [part(**drawn(**keys))]
-        for name, (part, keys) in parts.items()
-        if random.random() < 0.3
-    }
-    boom = pt.Boom(**drawn(segments=[arm, fly], joints=[joint], **more))
+    jack = {"segment": "arm", "x": 2.0, "ground": (0.5, -1.0), "stiffness": 1e7}
+    parts: tuple[tuple[str, Any, Mapping[str, Any]], ...] = (
+        ("loads", pt.Load, {"segment": "fly", "x": 13.0, **load}),
+        ("cylinders", pt.Cylinder, jack),
+        ("stops", pt.Stop, {"segment": "fly", "x": 13.0, "play": 0.1, "contact": law}),
+    )
+    more = {name: [part(**drawn(**keys))] for name, part, keys in parts if random.random() < 0.3}
+    supports = (pt.Support(**drawn(x=0.0, kind="clamped")),)
+    masses = (pt.PointMass(**drawn(x=12.0, mass=50.0)),)
+    first = drawn(name="arm", start=0.0, end=8.4, material=steel, section=arm)
+    second = drawn(name="fly", start=6.0, end=14.0, material=steel, section=fly, load=-500.0)
+    segments = [
+        pt.Segment.of_section(**first, supports=supports),
+        pt.Segment.of_section(**second, masses=masses),
+    ]
+    joint = pt.Joint(**drawn(outer="arm", inner="fly", stations=stations, play=0.01, contact=law))
+    boom = pt.Boom(**drawn(segments=segments, joints=[joint], **more))
     if random.random() < 0.3:
         boom = pt.with_weight(boom, **drawn(angle=30.0, acceleration=9.81))
     models = (

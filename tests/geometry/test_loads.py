@@ -185,7 +185,11 @@ def test_cylinder_data_give_stiffness_pressure_and_buckling() -> None:
     assert jack.extension == 2.0
     assert jack.axial_stiffness == pytest.approx(stiffness, rel=1e-12)
     assert jack.buckling_force == pytest.approx(buckling, rel=1e-12)
-    assert jack.resistance == pytest.approx(min(2.5e7 * area, buckling), rel=1e-12)
+    assert jack.resistance() == pytest.approx(min(2.5e7 * area, buckling), rel=1e-12)
+    # The oil pulls at the ring about the rod, which does not buckle.
+    ring = area - rod
+    assert jack.resistance(pulls=True) == pytest.approx(2.5e7 * ring, rel=1e-12)
+    assert replace(jack, capacity=1e5).resistance(pulls=True) == 1e5
     assert replace(jack, spread=0.6).axial_stiffness == pytest.approx(2.0 * stiffness, rel=1e-12)
     for wrong, message in (
         ({"open": 4.5}, "open: 4.5 m, and from ground to lug it is 5 m: the cylinder does not "
@@ -193,8 +197,7 @@ def test_cylinder_data_give_stiffness_pressure_and_buckling() -> None:
         ({"rod": 0.14}, "rod: must be below the bore of 0.14 m, got 0.14 m"),
         ({"open": 6.0}, "open: must be below 6 m, twice closed, as the rod goes into the closed "
          "cylinder, got 6 m"),
-        ({"rod": None}, "rod: missing; the stiffness needs it beside bore, rod and closed, or give "
-         "it"),
+        ({"rod": None}, "rod: missing; give bore, rod and closed, or the stiffness"),
     ):  # fmt: skip
         with pytest.raises(BoomError) as caught:
             replace(jack, **wrong).check("cylinders[0]", spatial=False)

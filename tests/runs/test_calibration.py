@@ -228,6 +228,7 @@ title = "Rubbing"
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ratio", [0.0, 0.01])
 def test_the_error_of_a_motion_by_the_reduction_is_estimated(tmp_path: Path, ratio: float) -> None:
     """Reference: the same shell with a tolerance of 1e-8, and exact words.

@@ -173,6 +173,7 @@ def test_without_fenicsx_shells_are_refused_and_beams_exported(protractile: Prot
     assert protractile(f"{to} shell") == told(2, f"case.toml: --model: {line}")
 
 
+@pytest.mark.slow
 def test_a_missing_library_of_gmsh_is_one_line(tmp_path: Path) -> None:
     """Reference: the error of the loader without the library."""
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
@@ -198,6 +199,7 @@ main()
     )
 
 
+@pytest.mark.slow
 def test_ranks_of_another_mpi_are_refused(tmp_path: Path) -> None:
     """Each of two processes that MPICH starts is the only rank of Open MPI."""
     pytest.importorskip("mpi4py", reason="ranks need mpi4py")
@@ -209,6 +211,7 @@ def test_ranks_of_another_mpi_are_refused(tmp_path: Path) -> None:
     assert ended.stderr == f"protractile: case.toml: {line} {launcher()}\n"
 
 
+@pytest.mark.slow
 def test_beams_need_neither_fenicsx_nor_a_clean_environment(tmp_path: Path) -> None:
     """Reference: the first bytes of a PNG file (W3C 2003). Variables name a notebook's backend that
     is not installed, and a rank without a launcher.

@@ -243,6 +243,12 @@ def test_cylinder_by_its_drawing(tmp_path: Path) -> None:
     force = cylinder_force(state_at_rest(case, boom_with_play(case, build_boom(case))), 1)
     pressure = amount(force / (0.25 * pi * 0.14**2), "Pa")
     assert f"Oil pressure of cylinder 1: {pressure}." in shown
+    # Lifted by its tip, the boom pulls: by hand, the oil is on the ring about the rod.
+    up = table("[[load]]", segment="fly", x="head", magnitude=9e4)
+    rows = combination_rows(read_case(tmp_path, text + up + PEOPLE + FACTORS))
+    row = next(row for row in rows if row.quantity == "cylinder_force")
+    assert row.value < 0.0
+    assert row.limit == pytest.approx(2.5e7 * 0.25 * pi * (0.14**2 - 0.1**2), rel=1e-12)
     raised = text + table("[luff]", travel=35.0, time=20.0)
     assert refusal(tmp_path, raised).startswith("cylinder[1].open: 2.4 m, and from ground to lug ")
 

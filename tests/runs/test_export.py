@@ -74,10 +74,10 @@ def exported(case: pt.Case, folder: Path, comm: Any = None, cache: Any = None) -
 @pytest.mark.slow
 def test_a_beam_rests_and_peaks_elsewhere_as_here(tmp_path: Path) -> None:
     """Reference: other code, OpenSees with its elements, Newton's method and TR-BDF2; downwards."""
-    case = boom_with_more(tmp_path)
+    case = pt.change(boom_with_more(tmp_path), **{"time.duration": 0.8})
     script = exported(case, tmp_path)
     assert run(script, "--static") == pytest.approx(static_tip(case), rel=1e-6)
-    tip = motion_of(case).data["tip"].values[:801]
+    tip = motion_of(case).data["tip"].values
     assert 500 < tip.argmin() < 790
     peak = run(script, "--duration", "0.8", "--step", "2e-4")
     assert peak == pytest.approx(tip.min(), rel=2e-3)

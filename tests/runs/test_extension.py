@@ -336,6 +336,7 @@ head_section = { height = 0.5, width = 0.3, flange = 0.006, web = 0.006 }
 PRESSED = table("[[axial]]", force=3e5) + elements("beam", theory="euler-bernoulli")
 
 
+@pytest.mark.slow
 def test_tapered_boom_has_the_largest_stress_at_the_extension(tmp_path: Path) -> None:
     """Reference: by hand, 300 kN on four walls, at 9 m of 6.6 mm, nine tenths of the taper."""
     head, outer, inner, *_ = (pt.CASES / "drawn-out.toml").read_text("utf-8").split("[[segment]]\n")

@@ -76,9 +76,6 @@ def test_single_values_of_a_cantilever() -> None:
     )  # fmt: skip
     (segment,) = build_boom(case).segments
     force, bending = 100.0 * 9.80665, E * segment.second_moment_of_area
-    outer, inner = (HEIGHT + WALL, WIDTH + WALL), (HEIGHT - WALL, WIDTH - WALL)
-    by_hand = (outer[1] * outer[0] ** 3 - inner[1] * inner[0] ** 3) / 12.0
-    assert bending == pytest.approx(E * by_hand, rel=2.0e-3)
     strain = force * (LENGTH - 1.0) * 0.5 * (HEIGHT + WALL) / bending
     tip = -force * LENGTH**3 / (3.0 * bending)
     assert values(case) == pytest.approx([tip, strain, -strain, 2.0 * tip], rel=1.0e-6)
@@ -98,7 +95,7 @@ def test_free_travel_is_that_of_rigid_segments(above: float | None) -> None:
     """Reference: analytic. The fly turns by play/overlap: p + 2 p a/l with its arm a beyond it.
 
     Play on one side only moves the range. The travel of elastic beams that are pushed up and down
-    grows in proportion to the force, from this travel on.
+    grows in proportion to the force, from this travel on. Travels of joints add up.
     """
     joint = BOOM["joint"][0] | ({} if above is None else {"play_above": above})
     case = measured({**BOOM, "joint": [joint]}, channel("free_travel", value=0.0))
@@ -110,16 +107,10 @@ def test_free_travel_is_that_of_rigid_segments(above: float | None) -> None:
         pushed[force] = values(measured(light, channel("tip", value=0.0)))[0]
     small, large = (pushed[force] - pushed[-force] for force in (300.0, 600.0))
     assert 2.0 * small - large == pytest.approx(values(case)[0], rel=1.0e-6)
-
-
-def test_free_travels_of_joints_add_up() -> None:
-    """Reference: analytic. The first joint turns the second one, which has an arm of its own."""
-    third = BOOM["segment"][1] | {"name": "third", "section": BOOM["segment"][1]["section"] | {
-        "height": 0.2, "width": 0.1}}  # fmt: skip
-    joints = [*BOOM["joint"], BOOM["joint"][0] | {"outer": "fly", "inner": "third", "play": 0.002}]
-    tables = {**BOOM, "segment": [*BOOM["segment"], third], "joint": joints}
-    boom = build_boom(load_case(tables))
-    assert boom.tip == pytest.approx(11.0)
+    smaller = BOOM["segment"][1]["section"] | {"height": 0.2, "width": 0.1}
+    third = BOOM["segment"][1] | {"name": "third", "section": smaller}
+    joints = [joint, joint | {"outer": "fly", "inner": "third", "play": 0.002}]
+    boom = build_boom(load_case({**BOOM, "segment": [*BOOM["segment"], third], "joint": joints}))
     expected = 0.004 * (1.0 + 2.0 * 6.0) + 0.002 * (1.0 + 2.0 * 3.0)
     assert free_travel(boom) == pytest.approx(expected, rel=1.0e-9)
 
@@ -141,8 +132,8 @@ def test_readings_over_time_have_gaps_units_and_offsets(here: Path) -> None:
     assert tip.readings == pytest.approx([0.001, 0.003, 0.004])
     assert strain.readings == pytest.approx([1.0e-5, 2.0e-5, 4.0e-5])
     assert experiment.number("measured[1].time_offset") == (0.1, "s")
-    shifted = experiment.changed({"measured.time_offset": 0.2})
-    assert [channel.time_offset for channel in shifted.measured] == [0.2, 0.2]  # type: ignore[attr-defined]
+    shifted = experiment.changed({"measured.time_offset": 0.2}).measured
+    assert [channel.time_offset for channel in shifted] == [0.2, 0.2]
 
 
 TIMES = np.arange(0.0, 1.0, 0.01)
@@ -167,8 +158,7 @@ def test_a_model_agrees_with_itself_and_not_with_another() -> None:
     assert found.misfit == pytest.approx(1.0, abs=3.0 / np.sqrt(2.0 * tip.size))
     assert abs(found.bias) < 3.0e-3 / np.sqrt(tip.size)
     assert right.agrees
-    read, computed = found.features.values()
-    assert read.frequency == pytest.approx(computed.frequency, rel=0.02)
+    _, computed = found.features.values()
     assert right.frame.loc["tip", "slow_of_model"] == computed.slow
     other = compare(measured({**tables, "payload": {"mass": 150.0}}, channel("tip", table=table)))
     assert not other.agrees
@@ -251,19 +241,16 @@ SERIES = [(0.0, 0.0), (1.0, 0.0)]
         ({"quantity": "tip", "table": [(2.0, 0.0), (3.0, 0.0)]},
          "measured[1].time_offset: has no two readings from 0 to 1 s of the run"),
         (None, "measured: missing; give a [[measured]]"),
+        ({"quantity": "tip", "value": 0.0},
+         "--model: 'shell' is not a beam of the case; give 'beam'"),
     ],
 )  # fmt: skip
 def test_wrong_channels_are_refused(keys: dict[str, Any] | None, what: str) -> None:
     channels = [] if keys is None else [{"name": "one", "uncertainty": 1.0e-3, **keys}]
+    model = "shell" if what.startswith("--model") else None
     with pytest.raises(BadInput) as refused:
-        compare(measured(CANTILEVER, *channels))
+        compare(measured(CANTILEVER, *channels), model)
     assert str(refused.value).startswith(f"case: {what}")
-
-
-def test_only_a_beam_can_be_compared() -> None:
-    with pytest.raises(BadInput) as refused:
-        compare(measured(CANTILEVER, channel("tip", value=0.0)), "shell")
-    assert str(refused.value) == "case: --model: 'shell' is not a beam of the case; give 'beam'"
 
 
 def test_the_report_of_a_run_has_the_readings() -> None:
@@ -272,9 +259,7 @@ def test_the_report_of_a_run_has_the_readings() -> None:
     results = run_case(case)
     (table,) = judge(results).tables
     assert table.rows == compare(case).table().rows
-    page = render(results, judge(results), [], [])
-    assert '<h2 id="readings">Readings</h2>' in page
-    assert "Model and readings" in page
+    assert '<h2 id="readings">Readings</h2>' in render(results, judge(results), [], [])
     results.case = load_case(CANTILEVER)
     assert judge(results).tables == []
     results.case = measured(CANTILEVER, channel("frequency", number=900, value=0.0))

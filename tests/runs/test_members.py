@@ -8,9 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from protractile.analysis.equilibria import equilibria
 from protractile.analysis.low_pass import SlowPeaks, slow_peaks
-from protractile.analysis.measure import measure_boom
 from protractile.analysis.model import AnalysisModel
 from protractile.analysis.plate_buckling import (
     measure_plates,
@@ -19,7 +17,6 @@ from protractile.analysis.plate_buckling import (
 from protractile.analysis.rows import INITIAL, REST, Rows, extremes, static_rows
 from protractile.analysis.states import States
 from protractile.cases import change
-from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.integrator import AdaptiveStep
 from protractile.dynamics.line import Line
 from protractile.dynamics.motion import Motion
@@ -72,20 +69,15 @@ def test_member_0_is_the_trajectory(run: Run, tmp_path: Path) -> None:
     write(run, Addition(), tmp_path)
     results = Results.load(tmp_path)
     ensembles = run.results.ensembles
-    xr.testing.assert_equal(results.ensembles, ensembles)
-    assert results.ensembles["tip"].attrs["units"] == "m"
-    assert results.ensembles.attrs["case_hash"] == results.summary.case_hash
+    xr.testing.assert_identical(results.ensembles.load(), ensembles)
+    assert ensembles.attrs["case_hash"] == results.summary.case_hash
     assert results.case.ensemble == run.results.case.ensemble
     assert ensembles["model"].values.tolist() == SERIES
-    assert ensembles["tip"].dims == ("model", "member", "time")
-    assert ensembles.attrs["Conventions"] == "CF-1.8"
     for place in ("tip", "head"):
-        assert ensembles[place].dtype == np.float32
-        assert ensembles[place].attrs == run.results.trajectories[place].attrs
-        for name in SERIES:
-            own = run.results.trajectories[place].sel(model=name).values
-            found = ensembles[place].sel(model=name).isel(member=0).values
-            np.testing.assert_array_equal(found, own.astype(np.float32))
+        own = run.results.trajectories[place].sel(model=SERIES)
+        assert ensembles[place].attrs == own.attrs
+        found = ensembles[place].sel(member=0)
+        np.testing.assert_array_equal(found, own.astype(np.float32), strict=True)
 
 
 def test_slow_is_below_the_closed_boom(case: Case) -> None:
@@ -109,8 +101,7 @@ def test_summary_has_horizons_and_slow_peaks(run: Run) -> None:
         assert peaks.height_spread[0] < peaks.height_spread[1] < 0.05
         assert 0.9 < (peaks.period or 0.0) < 1.2
     found = run.results.summary.comparisons
-    assert found.reference == "kantorovich-5"
-    assert list(found.ensembles) == ["kantorovich-4"]
+    assert (found.reference, [*found.ensembles]) == ("kantorovich-5", ["kantorovich-4"])
     level = found.ensembles["kantorovich-4"]
     until = min(ensemble.horizons["0.01"] for ensemble in (four, five))
     assert level.pointwise.until == pytest.approx(until, abs=2e-3)
@@ -123,7 +114,7 @@ def test_figures_have_bands_and_horizons(run: Run) -> None:
     """Reference: the ensembles themselves, 5 to 95 % of the members at each time, in mm."""
     figures = {figure.name: figure for figure in figures_of(run.results)}
     models = run.results.summary.models
-    horizons = [t for name in SERIES for t in models[name].ensemble.horizons.values()]
+    horizons = {t for name in SERIES for t in models[name].ensemble.horizons.values()}
     for place in ("tip", "head"):
         assert "5 to 95 % of the 5 members" in figures[place].caption
         chart = figures[place].chart
@@ -132,18 +123,7 @@ def test_figures_have_bands_and_horizons(run: Run) -> None:
         for name, band in bands.items():
             members = 1000.0 * run.results.ensembles[place].sel(model=name).values
             np.testing.assert_allclose(band, np.percentile(members, (5.0, 95.0), axis=0))
-        marks = {vertical.at for vertical in chart.verticals}
-        assert marks == {t for t in horizons if t is not None} != set()
-
-
-def peaks_of(system: GapSystem, cutoff: float, spread: float) -> SlowPeaks:
-    """Return the slow peaks of a run in the form of an ensemble."""
-    run = AdaptiveStep()(Motion(system, 4.0, STEP))
-    times, heights = slow_peaks(np.asarray(run.data["tip"].values), run.time, cutoff)
-    period = float(np.diff(times).mean())
-    return SlowPeaks(
-        times, np.full(times.size, spread), heights, spread * heights, period, period_spread=0.0
-    )
+        assert {vertical.at for vertical in chart.verticals} == horizons - {None} != set()
 
 
 def test_fewest_sufficient_steps_are_counted() -> None:
@@ -152,7 +132,11 @@ def test_fewest_sufficient_steps_are_counted() -> None:
     boom = build_boom(case)
     (model,) = (model for model in case.models if model.name == "kantorovich-5")
     cutoff, system = slow_cutoff(boom, case.time), build(case, boom, model).system
-    peaks = peaks_of(system, cutoff, 0.03)
+    motion = Motion(system, 4.0, STEP)
+    made = AdaptiveStep()(motion)
+    times, heights = slow_peaks(np.asarray(made.data["tip"].values), made.time, cutoff)
+    spread = np.full(times.size, 0.03)
+    peaks = SlowPeaks(times, spread, heights, spread * heights, float(np.diff(times).mean()), 0.0)
     # Beside a dashpot of no strength every step is made on its own.
     single = replace(system, dashpots=np.zeros((1, system.num_modes)))
     found = steps_for_peaks(Motion(single, 4.0, STEP), peaks, cutoff)
@@ -162,55 +146,50 @@ def test_fewest_sufficient_steps_are_counted() -> None:
     steps = [trial.steps for trial in found.trials]
     assert steps == [pytest.approx(found.duration / size, abs=16.0) for size in sizes]
     assert max(trial.energy_residual for trial in found.trials) < 1e-9
-    holding = [trial.steps for trial in found.trials if trial.holds]
-    assert found.fewest == min(holding)
     # Which of the long steps hold is chance, another one on another machine.
-    assert found.fewest <= steps[0]
-    higher = replace(peaks, height=1.05 * peaks.height, height_spread=0.0 * peaks.height)
-    assert steps_for_peaks(Motion(system, 4.0, STEP), higher, cutoff).fewest is None
+    assert found.fewest == min(trial.steps for trial in found.trials if trial.holds)
+    higher = replace(peaks, height=1.05 * heights, height_spread=0.0 * heights)
+    assert steps_for_peaks(motion, higher, cutoff).fewest is None
     too_few = SlowPeaks(*np.ones((4, PEAKS - 1)), period=1.0, period_spread=0.0)
-    assert steps_for_peaks(Motion(system, 4.0, STEP), too_few, cutoff) is None
+    assert steps_for_peaks(motion, too_few, cutoff) is None
 
 
-def test_the_weakest_wall_of_a_segment() -> None:
-    """Reference: analytic. Moments compress the bottom flange; torque shears all walls, and axial
-    forces compress them.
-    """
-    tube = BoxSection(height=0.5, width=0.4, flange=0.006, web=0.008)
-    segment = Segment.of_section("outer", 0.0, 2.0, METAL, tube, supports=(CLAMP,))
+BUCKLING = np.pi**2 * 2.1e11 / (12.0 * 0.91)
+TUBE = BoxSection(height=0.5, width=0.4, flange=0.006, web=0.008)
+OF_FLANGE, OF_WEB = BUCKLING * (0.006 / 0.4) ** 2, BUCKLING * (0.008 / 0.5) ** 2
 
-    def weakest(normal: float = 0.0, **curves: list[float]) -> tuple[str, float, float]:
-        nothing = {"deflection": [0.0, 0.0], "moment": [0.0, 0.0]}
-        values = nothing | {"normal": [0.5 * normal, normal]} | curves
-        # One coordinate of value 1 has these section forces.
-        line = Line(
-            np.array([0.0, 2.0]), {k: np.array(v)[:, None] for k, v in values.items()}, True
-        )
-        model = AnalysisModel(Boom((segment,), ()), modal_system([1.0], [0.0]), [line])
-        rest = States(model, np.zeros(1), np.ones((1, 1)))
-        (row,) = weakest_plates(Rows(extremes(measure_plates(rest), "beam", REST)))
-        return row.place, row.x, row.value
 
-    flange = np.pi**2 * 2.1e11 / (12.0 * 0.91) * (0.006 / 0.4) ** 2
-    stress = 1.0e5 * 0.25 / tube.second_moment_of_area
-    assert weakest(moment=[0.0, 1.0e5]) == ("bottom", 2.0, pytest.approx(4.0 * flange / stress))
-    pressed = pytest.approx(4.0 * flange * tube.area / 1.0e6)
-    assert weakest(-1.0e6) == ("bottom", 2.0, pressed)
-    # A positive moment presses the fibres with y < 0, on the left.
-    web = np.pi**2 * 2.1e11 / (12.0 * 0.91) * (0.008 / 0.5) ** 2
-    stress = 1.0e5 * 0.2 / tube.lateral_second_moment_of_area
-    found = weakest(lateral_moment=[0.0, 1.0e5])
-    assert found == ("left", 2.0, pytest.approx(4.0 * web / stress))
-    shear = 1.0e5 / (2.0 * 0.2 * 0.006)
-    wall, x, factor = weakest(torque=[1.0e5, 1.0e4])
-    assert (wall, x) == ("bottom", 0.0)
-    assert factor == pytest.approx(5.34 * flange / shear)
+@pytest.mark.parametrize(
+    ("curves", "wall", "x", "factor"),
+    [
+        ({"moment": [0.0, 1e5]}, "bottom", 2.0,
+         4.0 * OF_FLANGE / (1e5 * 0.25 / TUBE.second_moment_of_area)),
+        ({"normal": [-0.5e6, -1e6]}, "bottom", 2.0, 4.0 * OF_FLANGE * TUBE.area / 1e6),
+        # A positive moment presses the fibres with y < 0, on the left.
+        ({"lateral_moment": [0.0, 1e5]}, "left", 2.0,
+         4.0 * OF_WEB / (1e5 * 0.2 / TUBE.lateral_second_moment_of_area)),
+        ({"torque": [1e5, 1e4]}, "bottom", 0.0,
+         5.34 * OF_FLANGE / (1e5 / (2.0 * 0.2 * 0.006))),
+    ],
+)  # fmt: skip
+def test_the_weakest_wall_of_a_segment(
+    curves: dict[str, list[float]], wall: str, x: float, factor: float
+) -> None:
+    """Reference: analytic. Moments and axial forces compress walls, torque shears them."""
+    segment = Segment.of_section("outer", 0.0, 2.0, METAL, TUBE, supports=(CLAMP,))
+    given = {key: [0.0, 0.0] for key in ("deflection", "moment", "normal")} | curves
+    # One coordinate of value 1 has these section forces.
+    line = Line(np.array([0.0, 2.0]), {k: np.array(v)[:, None] for k, v in given.items()}, True)
+    model = AnalysisModel(Boom((segment,), ()), modal_system([1.0], [0.0]), [line])
+    rest = States(model, np.zeros(1), np.ones((1, 1)))
+    (row,) = weakest_plates(Rows(extremes(measure_plates(rest), "beam", REST)))
+    assert (row.place, row.x, row.value) == (wall, x, pytest.approx(factor))
 
 
 def test_check_names_buckling_walls(tmp_path: Path) -> None:
     """Reference: analytic, the bottom flange of a cantilever under a load at its tip."""
     section = BoxSection(height=0.4, width=0.3, flange=0.003, web=0.008)
-    unit = np.pi**2 * 2.1e11 / (12.0 * 0.91) * (0.003 / 0.3) ** 2
+    unit = BUCKLING * (0.003 / 0.3) ** 2
     stress = 2.0e5 * 6.0 * 0.2 / section.second_moment_of_area
     text = f"""
 title = "Thin"
@@ -224,37 +203,6 @@ load = [{{ segment = "arm", x = "head", magnitude = -2e5 }}]
     assert table.rows == [("arm", "bottom", "0", f"{4.0 * unit / stress:.3g}")]
     (caution,) = (line for line in found.lines if "panel formulas" in line)
     assert caution.startswith("caution: the wall 'bottom' of 'arm' buckles at")
-
-
-def test_bulging_walls_give_a_caution() -> None:
-    """Reference: by hand, right walls moved by a part of the play. Beams do not bulge."""
-    case = shipped("spatial")
-    boom, model = build_boom(case), next(m for m in case.models if m.name == "timoshenko")
-    built = build(case, boom, model)
-    loaded = AnalysisModel.of(boom, built.system, model.lines(boom, built))
-    system, rests = loaded.system, equilibria(loaded.system)
-    position, play = rests[0.0], boom.joints[0].lateral_play
-
-    def closed(of: GapSystem) -> Rows:
-        states = States.of(replace(loaded, system=of), rests)
-        rows = Rows(extremes(measure_boom(states), "shell", INITIAL))
-        return rows.where(quantity="closed_play")
-
-    assert [row.value for row in closed(system)] == pytest.approx([0.0, 0.0], abs=1e-12)
-    rows = system.rows.copy()
-    for part, name in ((0.05, "9y"), (0.3, "10y")):
-        station = next(one.index for one in boom.stations if one.name == name)
-        right = [
-            row
-            for row in np.flatnonzero(system.station_of_row == station)
-            if system.laws[row].one_sided(1) is not None
-        ]
-        rows[right] += part * play * position / (position @ position)
-    bulging = closed(replace(system, rows=rows))
-    assert [row.value / play for row in bulging] == pytest.approx([0.05, 0.3])
-    assert [row.limit for row in bulging] == [play, play]
-    (told,) = bulges(Context(case, boom, [State("in shell", closed=bulging)]))
-    assert f"by {300.0 * play:.2g} of {1000.0 * play:g} mm at x = 10 m; beams with " in told
 
 
 def test_check_names_plays_closed_by_walls() -> None:

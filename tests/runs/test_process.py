@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import SimpleNamespace
@@ -30,30 +31,26 @@ from protractile.runs.process.terminal import LONGEST, message, shorten
 ROOT = Path(__file__).parents[2]
 
 
-def in_a_shell(line: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    """Run a command line in a shell; ``check`` refers to the coarse case."""
-    line = line.replace("check", f"check {CASES / 'coarse.toml'}")
-    return subprocess.run(
-        ["bash", "-o", "pipefail", "-c", f"{sys.executable} -m protractile {line}"],
-        cwd=ROOT,
-        env=os.environ | environment,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-
-
 def test_closed_and_full_outputs_end_in_one_line_at_most() -> None:
     """The reader of the long schema closes the pipe early; letters of no terminal are replaced."""
-    full = in_a_shell("schema >/dev/full")
+
+    def in_a_shell(line: str) -> tuple[int, str, str]:
+        done = subprocess.run(
+            ["bash", "-o", "pipefail", "-c", f"{sys.executable} -m protractile {line}"],
+            env=os.environ | {"PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "ascii"},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        return done.returncode, done.stderr, done.stdout
+
     line = "protractile: output: file: cannot be used (No space left on device)\n"
-    assert (full.returncode, full.stderr) == (2, line)
-    closed = in_a_shell("schema | true")
-    assert (closed.returncode, closed.stderr) == (0, "")
-    silent = in_a_shell("check 2>&-", PYTHONIOENCODING="ascii")
-    assert (silent.returncode, silent.stderr) == (0, "")
-    assert "The paper's boom, coarse and short" in silent.stdout
-    assert "\\u2212" in silent.stdout
+    assert in_a_shell("schema >/dev/full") == (2, line, "")
+    assert in_a_shell("schema | true") == (0, "", "")
+    *ended, said = in_a_shell(f"check {CASES / 'coarse.toml'} 2>&-")
+    assert ended == [0, ""]
+    assert "The paper's boom, coarse and short" in said
+    assert "\\u2212" in said
 
 
 @given(st.text(st.characters(), max_size=2000))
@@ -136,15 +133,6 @@ def write(folder: Path, *names: str) -> None:
         (folder / name).write_text(" ".join(names), encoding="utf-8")
 
 
-def test_only_complete_files_get_their_names(tmp_path: Path) -> None:
-    path = tmp_path / "summary.json"
-    with atomic_path(path) as part:
-        part.write_text("{}", encoding="utf-8")
-        assert part.suffix == path.suffix
-        assert not path.exists()
-    assert [p.name for p in tmp_path.iterdir()] == ["summary.json"]
-
-
 @pytest.mark.parametrize("disk", ["Linux's own", "another"])
 def test_a_folder_is_replaced_as_a_whole(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, disk: str
@@ -164,22 +152,25 @@ def test_a_folder_is_replaced_as_a_whole(
 
 @pytest.mark.parametrize("kind", ["file", "folder"])
 def test_failing_write_keeps_the_old_file(tmp_path: Path, kind: str) -> None:
-    place = tmp_path / "place"
-    path = place if kind == "file" else place / "a.png"
-    path.parent.mkdir(exist_ok=True)
-    path.write_text("earlier", encoding="utf-8")
+    """Only complete files get their names."""
+    place = tmp_path / "place.json"
+    file = Path("") if kind == "file" else Path("a.png")
+
+    def write_and(fail: Callable[[], object]) -> None:
+        with (atomic_path if kind == "file" else atomic_folder)(place) as part:
+            assert (part.suffix == place.suffix) == (kind == "file")
+            (part / file).write_text(f"by {fail}", encoding="utf-8")
+            fail()
 
     def fill_the_disk() -> None:
-        with (atomic_path if kind == "file" else atomic_folder)(place) as part:
-            half = part if kind == "file" else part / "a.png"
-            half.write_text("half", encoding="utf-8")
-            raise OSError(28, "No space left on device")
+        raise OSError(28, "No space left on device")
 
+    write_and(list)
     with pytest.raises(OSError, match="No space left on device") as failed:
-        fill_the_disk()
+        write_and(fill_the_disk)
     assert failed.value.filename == str(place)
-    assert path.read_text(encoding="utf-8") == "earlier"
-    assert [p.name for p in tmp_path.iterdir()] == ["place"]
+    assert (place / file).read_text(encoding="utf-8") == f"by {list}"
+    assert [p.name for p in tmp_path.iterdir()] == [place.name]
 
 
 def test_changed_folder_keeps_other_files(tmp_path: Path) -> None:
@@ -204,14 +195,23 @@ def test_changed_folder_keeps_other_files(tmp_path: Path) -> None:
     *listed, _ = (folder / MANIFEST).read_text(encoding="utf-8").splitlines()
     assert [line.split()[1] for line in listed] == ["data", "report"]
     assert find_damaged_file(folder) is None
-    (folder / "mine").write_text("other", encoding="utf-8")
-    assert find_damaged_file(folder) is None
     (folder / "data").write_text("other", encoding="utf-8")
     assert find_damaged_file(folder) == "data"
 
 
-@pytest.mark.parametrize("damage", ["cut", "empty", "flipped", "pipe", "folder"])
-def test_a_damaged_manifest_hides_no_damage(tmp_path: Path, damage: str) -> None:
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda manifest, content: manifest.write_bytes(content[: len(content) // 2]),
+        lambda manifest, content: manifest.write_bytes(b""),
+        lambda manifest, content: manifest.write_bytes(content.replace(b"d", b"e", 1)),
+        lambda manifest, content: os.mkfifo(manifest),
+        lambda manifest, content: manifest.mkdir(),
+    ],
+)
+def test_a_damaged_manifest_hides_no_damage(
+    tmp_path: Path, damage: Callable[[Path, bytes], object]
+) -> None:
     """Reference: by construction. The manifest is cut, changed, or no regular file."""
     folder = tmp_path / "out"
     with atomic_folder(folder) as new:
@@ -219,16 +219,9 @@ def test_a_damaged_manifest_hides_no_damage(tmp_path: Path, damage: str) -> None
     manifest = folder / MANIFEST
     content = manifest.read_bytes()
     (folder / "data").write_text("other", encoding="utf-8")
-    assert find_damaged_file(folder) == "data"
     manifest.unlink()
     assert find_damaged_file(folder) is None
-    if damage == "pipe":
-        os.mkfifo(manifest)
-    elif damage == "folder":
-        manifest.mkdir()
-    else:
-        written = {"cut": content[: len(content) // 2], "flipped": content.replace(b"d", b"e", 1)}
-        manifest.write_bytes(written.get(damage, b""))
+    damage(manifest, content)
     assert find_damaged_file(folder) == MANIFEST
 
 
@@ -271,12 +264,9 @@ with scratch_folder(Path({str(folder)!r})) as part:
     print(part, flush=True)
     input()
 """
-    pipes: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
-    environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    killed, live = (
-        subprocess.Popen([sys.executable, "-c", program], env=environment, **pipes)
-        for _ in range(2)
-    )
+    keys: dict[str, Any] = dict.fromkeys(("stdin", "stdout"), subprocess.PIPE) | {"text": True}
+    keys["env"] = os.environ | {"PYTHONPATH": str(ROOT)}
+    killed, live = (subprocess.Popen([sys.executable, "-c", program], **keys) for _ in range(2))
     parts = [Path(process.stdout.readline().strip()) for process in (killed, live)]
     killed.kill()
     killed.wait()

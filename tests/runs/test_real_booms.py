@@ -2,22 +2,19 @@
 """Static states of shipped booms, and cautions for values out of usual ranges."""
 
 import re
-from dataclasses import replace
-from math import cos, isclose, radians
+from math import cos, radians
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from protractile.beam_model.boom_modes import BoomModes
-from protractile.beam_model.statics import Elements, StaticState, static_state
+from protractile.beam_model.statics import static_state
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Joint, Segment
 from protractile.runs import CASES
 from protractile.runs.case.build import build_boom
 from protractile.runs.cautions import rules
 from protractile.runs.cautions.context import Context
-from protractile.runs.pipeline.statics import cylinder_force, reaction_rows
 from tests.runs.case_texts import (
     HINGED,
     STEEL,
@@ -64,9 +61,9 @@ def by_hand(boom: Boom, weight: float, tip: float) -> tuple[list[Array], list[fl
     """
     pushed = []
     for one in boom.segments:
-        piece = -weight * one.mass_per_length * one.length / PIECES
-        points = [(mass.x, -weight * mass.mass, 0.0) for mass in one.all_masses]
-        pushed.append(np.array([*((x, piece, 0.0) for x in middles(one)), *points]))
+        masses = [(x, one.mass_per_length * one.length / PIECES) for x in middles(one)]
+        masses += [(mass.x, mass.mass) for mass in one.all_masses]
+        pushed.append(np.array([(x, -weight * mass, 0.0) for x, mass in masses]))
     pushed[-1] = np.vstack([pushed[-1], (boom.tip, tip, 0.0)])
     for joint in reversed(boom.joints):
         inner, (first, last) = pushed[joint.inner], midpoints(joint)
@@ -110,19 +107,6 @@ def force_at(pushed: Array, x: float) -> float:
     return float(pushed[np.isclose(pushed[:, 0], x)][-1, 1])
 
 
-def second_order(boom: Boom, rest: StaticState) -> float:
-    """Return ∫ P w′ dx of all segments in N·m, the moment of axial forces about the foot."""
-    modes = BoomModes(boom, Elements(boom).segments)
-    found = 0.0
-    for number, segment in enumerate(boom.segments):
-        x = np.linspace(segment.start, segment.end, 401)
-        deflections = [modes.displacement(number, each, "z") @ rest.position for each in x.tolist()]
-        found += float(segment.compression(0.5 * (x[1:] + x[:-1])) @ np.diff(deflections))
-    # The lead of a rope points to its winch at the foot.
-    tip = float(modes.displacement(len(boom.segments) - 1, boom.tip, "z") @ rest.position)
-    return found - sum(lead.force for lead in boom.leads) * tip
-
-
 @pytest.mark.parametrize("name", ["crane", "inspection-arm"])
 def test_booms_have_the_deflections_of_statics_by_hand(name: str) -> None:
     """Reference: analytic, lever rule and unit loads, with play's rotations, within 0.1 %.
@@ -137,63 +121,12 @@ def test_booms_have_the_deflections_of_statics_by_hand(name: str) -> None:
     touching = model.model_boom(boom).boom
     rest = static_state(touching, walls=0.0)
     pushed, _ = by_hand(boom, GRAVITY, 0.0)
-    contacts = {(joint.inner, x) for joint in boom.joints for x in midpoints(joint)}
-    for reaction in rest.reactions:
-        if reaction[:2] in contacts:
-            expected = force_at(pushed[reaction.segment], reaction.x)
-            assert reaction.force == pytest.approx(expected, rel=1e-3)
-    pads = [x for joint in boom.joints for x in midpoints(joint)]
-    ground = sum(
-        one.force
-        for one in rest.reactions
-        if one.segment == 0 and not any(isclose(one.x, x) for x in pads)
-    )
-    assert ground == pytest.approx(GRAVITY * sum(s.mass for s in boom.segments), rel=1e-3)
+    forces = {(one.segment, round(one.x, 9)): one.force for one in rest.reactions}
+    for inner, x in ((joint.inner, x) for joint in boom.joints for x in midpoints(joint)):
+        expected = force_at(pushed[inner], x)
+        assert forces[inner, round(x, 9)] == pytest.approx(expected, rel=1e-3)
     stiffness = [joint.contact.terms[0].stiffness for joint in touching.joints]
     assert rest.tip == pytest.approx(tip_by_hand(boom, stiffness), rel=1e-3)
-
-
-@pytest.mark.parametrize(("name", "lowered"), [("crane", 0.0), ("lift", 0.3), ("hoist", 0.3)])
-def test_moments_about_the_pin_are_in_balance(name: str, lowered: float) -> None:
-    """Reference: analytic, moments of all forces about the pin, within 0.1 %."""
-    case = shipped(name)
-    base, *others = case.segments
-    (pin,) = base.supports
-    lower = replace(pin, depth=pin.depth + lowered)
-    base = base.model_copy(update={"supports": (lower,)})
-    case = case.model_copy(update={"segments": (base, *others)})
-    boom = build_boom(case)
-    (jack,), foot = boom.cylinders, boom.segments[0].foot
-    model = next(model for model in case.models if not model.bonded)
-    rest = static_state(model.model_boom(boom).boom, walls=0.0)
-    at_pin, at_lug = (
-        {row.quantity: row.value for row in reaction_rows(rest) if row.place == place}
-        for place in (f"at {foot.x:g} m", f"lug at {jack.x:g} m")
-    )
-    angle = np.radians(case.gravity.angle)
-    masses = [
-        (mass, x)
-        for segment in boom.segments
-        for mass, x in (
-            (segment.mass_per_length * segment.length, segment.mass_centre),
-            *((point.mass, point.x) for point in segment.all_masses),
-        )
-    ]
-    turning = sum(mass * (x - foot.x) for mass, x in masses) * GRAVITY * np.cos(angle)
-    # At t = 0 a load that ramps is none yet.
-    turning -= sum(load.magnitude for load in case.loads if load.ramp is None) * boom.tip
-    along = sum(mass for mass, _ in masses) * GRAVITY * np.sin(angle)
-    along += sum(axial.force for axial in (*case.axial, *boom.leads))
-    turning -= along * foot.depth + second_order(boom, rest)
-    force = cylinder_force(rest, 1)
-    assert force * jack.arm(foot) == pytest.approx(turning, rel=1e-3)
-    assert at_pin["axial_reaction"] + at_lug["axial_reaction"] == pytest.approx(along, rel=1e-9)
-    assert at_pin.get("support_moment", 0.0) == pytest.approx(
-        at_pin["axial_reaction"] * foot.depth, rel=1e-6, abs=1.0
-    )
-    axial = force * jack.direction[0]
-    assert at_lug["axial_reaction"] == pytest.approx(axial, rel=1e-9)
-    assert at_lug["support_moment"] == pytest.approx(axial * jack.depth, rel=1e-6)
 
 
 PUSH = """[[base]]
@@ -203,6 +136,7 @@ table = [[0.0, 0.0], [1.0, 0.5]]
 
 """
 PIN = {"diameter": 0.04, "strength": 8e8}
+JACK = {"x": 2.4, "depth": 0.25, "ground": [0.7, -1.1], "pin": PIN}
 PAD = {"length": 0.12, "width": 0.05, "thickness": 0.012, "allowable_pressure": 2e7}
 LIFT = f"""
 title = "A lift that is proved"
@@ -215,18 +149,7 @@ life = {{ detail_category = 71.0, partial_factor = 1.15 }}
 {box("base", (0.0, 6.5), (0.300, 0.220, 0.006, 0.005), HINGED)}
 {box("fly", (5.3, 11.3), (0.256, 0.180, 0.005, 0.004))}
 {table("[[joint]]", outer="base", inner="fly", stations=["tail", "head"], play=0.003, pad=PAD)}
-{
-    table(
-        "[[cylinder]]",
-        segment="base",
-        x=2.4,
-        depth=0.25,
-        ground=[0.7, -1.1],
-        stiffness=3e7,
-        capacity=2e5,
-        pin=PIN,
-    )
-}
+{table("[[cylinder]]", segment="base", stiffness=3e7, capacity=2e5, **JACK)}
 [[load_case]]
 name = "a"
 load = [{{ segment = "fly", magnitude = -30.0, group = "wind" }}]
@@ -334,8 +257,7 @@ def test_a_hoist_needs_its_rope_and_its_load_once(tmp_path: Path) -> None:
 
 def test_a_boom_that_buckles_names_the_likely_unit(tmp_path: Path) -> None:
     """Reference: exact words; a stiffness in N/mm, and a payload of ten times the boom."""
-    old = "stiffness = 30000000.0"
-    text = edited(LIFT, ("mass = 150.0", "mass = 5000.0"), (old, "stiffness = 30000.0"))
-    found = refusal(tmp_path, text)
+    slips = ("mass = 150.0", "mass = 5000.0"), ("stiffness = 30000000.0", "stiffness = 30000.0")
+    found = refusal(tmp_path, edited(LIFT, *slips))
     assert found.startswith("model[1]: the boom of 'beam' buckles under ")
     assert found.endswith("; if it is in N/mm, give 3e+07 N/m")

@@ -1,17 +1,14 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Report and files of a run."""
 
-import base64
 import json
 import re
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
-import pandas as pd
 import pytest
 import xarray as xr
 from pydantic import ValidationError
@@ -27,21 +24,18 @@ from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.cautions.context import Context
 from protractile.runs.cautions.response import axial_stresses
 from protractile.runs.cautions.rules import add_cautions, cautions
-from protractile.runs.folder.cache import Cache
 from protractile.runs.paper.rules import judge
 from protractile.runs.paper.statements import STATEMENTS
-from protractile.runs.paper.verdicts import Verdict, addition
+from protractile.runs.paper.verdicts import addition
 from protractile.runs.pipeline.design_results import ModelDesignResults
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.run import Run
 from protractile.runs.pipeline.summary import Snapshots, Summary
 from protractile.runs.report.additions import Addition
-from protractile.runs.report.additions import judge as add_verdicts
 from protractile.runs.report.charts import Chart, Curve
 from protractile.runs.report.document import render
 from protractile.runs.report.figure_context import Figure
 from protractile.runs.report.output import write, write_csv
-from protractile.runs.report.snapshots import Snapshot
 from protractile.runs.report.static_charts import draw_chart
 from protractile.runs.report.terminal_tables import print_models
 from tests.runs.case_texts import shipped
@@ -49,7 +43,6 @@ from tests.runs.summaries import changed, finished, model_summary, printed, summ
 from tests.system.run_folder import Page
 
 MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-bonded"]
-GIF = base64.b64decode("R0lGODlhAQABAIAAAP///wAAACwAAAAAAQABAAACAkQBADs=")
 
 
 @pytest.fixture(scope="module")
@@ -65,14 +58,8 @@ def figures() -> list[Figure]:
     return [Figure("tip", title, "A caption & more.", drawing=lambda: draw_chart(chart, title))]
 
 
-def report(
-    results: Results,
-    figures: list[Figure],
-    verdicts: list[Verdict] | None = None,
-    snapshots: Sequence[Snapshot] = (),
-) -> str:
-    found = judge(results) if verdicts is None else verdicts
-    return render(results, addition(results.case, found), figures, snapshots)
+def report(results: Results, figures: list[Figure]) -> str:
+    return render(results, addition(results.case, judge(results)), figures, [])
 
 
 def test_a_missing_peak_is_said_to_be_missing(results: Results, figures: list[Figure]) -> None:
@@ -80,12 +67,7 @@ def test_a_missing_peak_is_said_to_be_missing(results: Results, figures: list[Fi
     peaks = {name: model.first_peak["tip"].height for name, model in results.summary.models.items()}
     assert peaks["kantorovich-4"] is None
     assert peaks["beam-fe-bonded"] == pytest.approx(0.0193, rel=0.01)
-    text = report(results, figures)
-    text = text[text.index('id="table-models"') :]
-    shown = r"<tr>\s*<td[^>]*>[^\n]*kantorovich-4</td>.*?</tr>"
-    row = re.findall(shown, text, re.DOTALL)[0]
-    assert len(re.findall(r"<td[^>]*>–</td>", row)) == 2
-    assert "First tip peak –: none within 0.6 s." in text
+    assert "First tip peak –: none within 0.6 s." in report(results, figures)
     terminal = printed(print_models, results, width=80).splitlines()
     assert max(map(len, terminal)) <= 80
     lines = {line.split()[0]: line for line in terminal if line.split()}
@@ -94,58 +76,22 @@ def test_a_missing_peak_is_said_to_be_missing(results: Results, figures: list[Fi
 
 
 def test_shows_every_verdict_first(results: Results, figures: list[Figure]) -> None:
-    """Reference: the run. Every link has a target, whose id is unique."""
-    page = Page(report(results, figures))
+    """Reference: the run. Every link has a target, whose id is unique; XML is well-formed."""
+    text = report(results, figures)
+    page = Page(text)
     for verdict in judge(results):
         assert verdict.statement in page.text
         assert verdict.why in page.text
-    order = [
-        page.text.index(heading) for heading in ("Verdicts", "Motion", "Numerics", "Provenance")
-    ]
-    assert order == sorted(order)
-    cells = re.sub(r"\s+", " ", page.text)
-    for name, model in results.summary.models.items():
-        assert f"{name} {model.kind}" in cells
+    headings = [page.text.index(x) for x in ("Verdicts", "Motion", "Numerics", "Provenance")]
+    assert headings == sorted(headings)
     assert results.summary.case_hash in page.text
-    assert results.summary.versions["numpy"] in page.text
     assert toml.dumps(results.case) in page.text
     ids = [str(attributes["id"]) for _, attributes in page.tags if "id" in attributes]
     assert len(set(ids)) == len(ids)
     links = {str(link["href"]).removeprefix("#") for link in page.all("a")}
     assert links | {*STATEMENTS} <= {*ids}
-
-
-def test_needs_nothing_else(results: Results, figures: list[Figure], tmp_path: Path) -> None:
-    motion = tmp_path / "motion.gif"
-    motion.write_bytes(GIF)
-    page = Page(report(results, figures, snapshots=[Snapshot(motion, "Motion", "It moves.")]))
-    assert not [script for script in page.all("script") if "src" in script]
-    assert not page.all("link") + page.all("iframe")
-    assert all(str(link["href"]).startswith("#") for link in page.all("a"))
-    assert "url(" not in page.style
-    assert "@import" not in page.style
-    sources = [str(picture["src"]) for picture in page.all("img")]
-    kinds, pictures = zip(*(source.split(";base64,") for source in sources), strict=True)
-    assert kinds == ("data:image/svg+xml", "data:image/gif")
-    drawn = ElementTree.fromstring(base64.b64decode(pictures[0]))
-    assert {"deflection (mm)", "Tip <of> the boom"} <= {*drawn.itertext()}
-    assert base64.b64decode(pictures[1]) == GIF
-
-
-def test_is_well_formed(results: Results, figures: list[Figure]) -> None:
-    text = report(results, figures)
     closed = re.sub(r"<(meta|img)\b([^>]*)>", r"<\1\2/>", text.replace("<!DOCTYPE html>", ""))
-    root = ElementTree.fromstring(closed.strip())
-    assert root.tag == "html"
-    verdicts = next(table for table in root.iter("table") if table.get("class") == "verdicts")
-    assert len(list(verdicts.iter("tr"))) - 1 == len(STATEMENTS)
-    rows = {
-        part.get("id"): len(list(part.iter("tr"))) - 1
-        for part in root.iter("div")
-        if part.get("class") == "table"
-    }
-    found = [rows[f"table-{name}"] for name in ("models", "steps", "laws")]
-    assert found == [len(MODELS), len(MODELS), 2]
+    assert ElementTree.fromstring(closed.strip()).tag == "html"
 
 
 def test_a_verdict_leads_to_its_evidence(results: Results, figures: list[Figure]) -> None:
@@ -174,9 +120,8 @@ def test_escapes_everything(results: Results, figures: list[Figure]) -> None:
     verdicts = [replace(verdict, why=attack) for verdict in judge(results)]
     skipped = Snapshots(written={}, skipped=attack)
     update = {"snapshots": skipped, "cautions": [f"caution: {attack}"]}
-    summary = results.summary.model_copy(update=update)
-    told = replace(results, case=case, summary=summary)
-    page = Page(report(told, figures, verdicts))
+    told = replace(results, case=case, summary=results.summary.model_copy(update=update))
+    page = Page(render(told, addition(case, verdicts), figures, []))
     assert not page.all("script")
     # Title, heading; caution; whys; snapshots.
     assert page.text.count(attack) == 2 + 1 + len(verdicts) + 1
@@ -186,24 +131,21 @@ def test_escapes_everything(results: Results, figures: list[Figure]) -> None:
     assert attack in " ".join(printed(print_models, told, width=250).split())
 
 
-def told(results: Results) -> list[str]:
-    return cautions(Context.of_run(results))
-
-
 @pytest.mark.parametrize(
     ("tip", "line"),
     [
-        (2.0, "In {} the tip moves by 2 m, 11 % of the boom's length: small displacements make it "
-         "about 1.2 % too large, and moments about 0.72 %, on the safe side."),
-        (3.0, "caution: in {} the tip moves by 3 m, 16 % of the boom's length: small displacements "
-         "make it about 2.7 % too large, and moments about 1.6 %; check units and loads"),
+        (2.0, "In kantorovich-4 the tip moves by 2 m, 11 % of the boom's length: small displacement"
+         "s make it about 1.2 % too large, and moments about 0.72 %, on the safe side."),
+        (3.0, "caution: in kantorovich-4 the tip moves by 3 m, 16 % of the boom's length: small "
+         "displacements make it about 2.7 % too large, and moments about 1.6 %; check units and "
+         "loads"),
     ],
 )  # fmt: skip
 def test_large_displacement_gives_a_caution(results: Results, tip: float, line: str) -> None:
     """Reference: by hand."""
     wild = results.trajectories.copy(deep=True)
     wild["tip"][0, -1] = tip
-    assert told(replace(results, trajectories=wild)) == [line.format("kantorovich-4")]
+    assert cautions(Context.of_run(replace(results, trajectories=wild))) == [line]
 
 
 @pytest.mark.parametrize(
@@ -224,7 +166,7 @@ def test_cautions_against_poor_shell(results: Results, changes: dict[str, Any], 
     case = results.case.model_copy(update={"models": (Shell(name="shell"),)})
     summary = summary_of({"shell": model_summary(**changes)})
     data = results.trajectories.isel(model=[0]).assign_coords(model=["shell"])
-    found = told(Results(case, data, summary))
+    found = cautions(Context.of_run(Results(case, data, summary)))
     assert [one for one in found if "error" in one] == ([line] if line else [])
 
 
@@ -247,9 +189,7 @@ def test_axial_forces_beyond_the_wall_limit_give_a_caution(name: str, cautioned:
     case = shipped(name)
     models = {"beam": model_summary(), "shell": shell}
     told = [*axial_stresses(Context(case, build_boom(case), models=models))]
-    assert [line.partition(" carry ")[0] for line in told] == (
-        ["the walls of shell"] if cautioned else []
-    )
+    assert [line.partition(" carry ")[0] for line in told] == ["the walls of shell"] * cautioned
 
 
 pytestmark = pytest.mark.usefixtures("few_figures")
@@ -261,49 +201,24 @@ def run() -> Run:
     return finished(change(case, **{"time.duration": 0.05}))
 
 
-@pytest.fixture
-def folder(run: Run, tmp_path: Path, few_figures: None) -> Path:
-    out = tmp_path / "out"
-    out.mkdir()
-    write(run, add_verdicts(run.results), out)
-    return out
-
-
-def header(folder: Path) -> list[str]:
-    return [*pd.read_csv(folder / "trajectories.csv", nrows=0).columns]
-
-
-def test_columns_of_stations_are_distinct(run: Run, folder: Path, tmp_path: Path) -> None:
-    plain = run.results.trajectories
-    places = [("9", "z"), ("10", "z"), ("9", "y"), ("10", "y"), ("9", "z")]
-    rest = Stop(1, 9.0, 0.1, PowerContact(1.0e6))
-    stations_in_space = stations(run.results.boom.joints, [rest], ["z", "y"])
-    names = [station.name for station in stations_in_space]
-    assert names == ["9", "10", "9y", "10y", "9#2"]
-    data = plain.isel(station=[0, 1, 0, 1, 0]).assign_coords(
-        direction=("station", [direction for _, direction in places]), place=("station", names)
-    )
-    in_space = replace(run, results=replace(run.results, trajectories=data))
-    out = tmp_path / "in space"
-    out.mkdir()
-    write(in_space, Addition(), out)
-    gaps = [name for name in header(out) if name.startswith("gap@")]
-    assert gaps == ["gap@9", "gap@10", "gap@9y", "gap@10y", "gap@9#2"]
-    assert [name for name in header(folder) if name.startswith("gap@")] == ["gap@9", "gap@10"]
-
-
 def test_the_table_is_pandas_s(run: Run, tmp_path: Path) -> None:
-    """Reference: other code, pandas, to the byte. A model without friction has an empty column."""
+    """Reference: other code, pandas, to the byte. A model without friction has an empty column.
+
+    Columns of stations at one place are distinct.
+    """
     plain = run.results.trajectories
-    data = xr.concat(
-        [plain, plain.assign(friction_force=np.nan * plain["friction_force"])], "model"
-    )
-    data = data.assign_coords(model=["a, b", "nan"])
+    boom = run.results.boom
+    places = stations(boom.joints, [Stop(1, 9.0, 0.1, PowerContact(1.0e6))], ["z", "y"])
+    names = [station.name for station in places]
+    assert names == ["9", "10", "9y", "10y", "9#2"]
+    without = plain.assign(friction_force=np.nan * plain["friction_force"])
+    data = xr.concat([plain, without], "model").isel(station=[0, 1, 0, 1, 0])
+    data = data.assign_coords(model=["a, b", "nan"], place=("station", names))
     write_csv(data, tmp_path / "ours.csv")
     columns = {}
     for name, variable in data.data_vars.items():
         if "station" in variable.dims:
-            for number, place in enumerate(data["place"].values):
+            for number, place in enumerate(names):
                 columns[f"{name}@{place}"] = variable.isel(station=number, drop=True)
         else:
             columns[str(name)] = variable
@@ -332,41 +247,24 @@ def test_model_without_design_results_keeps_its_motion(
         "kantorovich-4": "cannot be computed (Singular matrix); look for an extreme number of "
         "the case, for example in another unit"
     }
-    page = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert "cannot be computed (Singular matrix)" in page
+    assert "cannot be computed (Singular matrix)" in (tmp_path / "report.html").read_text("utf-8")
     assert found.summary.cautions == [
         f"failed: {name}: {why}" for name, why in found.summary.failures.items()
     ]
 
 
-# All keys of a summary.
 STORED = Path(__file__).parent / "data" / "summary.json"
 
 
-def content() -> dict[str, Any]:
-    found: dict[str, Any] = json.loads(STORED.read_text(encoding="utf-8"))
-    return found
-
-
 def test_keys_and_values_are_unchanged() -> None:
-    """Reference: the stored file, to the last digit and in its order."""
-    text = str(Summary.load(STORED))
-    assert json.dumps(json.loads(text)) == json.dumps(content())
+    """Reference: the stored file, to the last digit and in its order, and a title."""
+    summary = Summary.load(STORED)
+    text = str(summary)
+    assert json.dumps(json.loads(text)) == json.dumps(json.loads(STORED.read_text("utf-8")))
     # A list of numbers is one line.
     assert max(map(len, re.findall(r"\d,\n\s*-?\d", text)), default=0) == 0
-
-
-def test_a_title_keeps_its_brackets() -> None:
-    """Reference: the title."""
     title = "Boom [1,   2] and [ 3 ]"
-    summary = Summary.load(STORED).model_copy(update={"title": title})
-    assert json.loads(str(summary))["title"] == title
-
-
-def test_a_summary_comes_back_from_a_cache(tmp_path: Path) -> None:
-    summary = Summary.load(STORED)
-    Cache(tmp_path).store("a", summary)
-    assert str(Cache(tmp_path).load("a", Summary)) == str(summary)
+    assert json.loads(str(summary.model_copy(update={"title": title})))["title"] == title
 
 
 def test_values_that_are_not_finite_are_null() -> None:
@@ -388,7 +286,7 @@ def test_values_that_are_not_finite_are_null() -> None:
     ],
 )  # fmt: skip
 def test_another_version_s_is_refused(tmp_path: Path, model: str, key: str, wrong: Any) -> None:
-    other = content()
+    other = json.loads(STORED.read_text("utf-8"))
     other["models"][model][key] = wrong
     (tmp_path / "summary.json").write_text(json.dumps(other), encoding="utf-8")
     with pytest.raises(ValidationError) as refused:

@@ -116,11 +116,12 @@ def test_changes_are_those_of_closed_forms(capsys: pytest.CaptureFixture[str]) -
 
 @pytest.mark.slow
 def test_a_refused_side_is_named(capsys: pytest.CaptureFixture[str]) -> None:
-    """Reference: analytic, g cos 89.1° of weight with 1 % less; 1 % more is refused.
-
-    The load behind this key changes the tip by 1 %.
+    """Reference: analytic, g cos 89.1° of weight with 1 % less; 1 % more is refused. With 1 % less
+    the beam would end before its mass; with 1 % more q L⁴/(8 E J) grows,
+    and weight along the beam adds 0.6 % of that.
     """
-    text = edited(CANTILEVER, ("[[segment]]", "[gravity]\nangle = 90.0\n[[segment]]"))
+    text = edited(CANTILEVER, ("[[segment]]", "[gravity]\nangle = 90.0\n[[segment]]"),
+                  ("load =", "masses = [{ x = 4.0, mass = 1e-6 }]\nload ="))  # fmt: skip
     Path("case.toml").write_text(text, encoding="utf-8")
     assert sweep("--sensitivity", "--out", "out") == 0
     table = pd.read_csv("out/sensitivity.csv", index_col="key")
@@ -129,8 +130,16 @@ def test_a_refused_side_is_named(capsys: pytest.CaptureFixture[str]) -> None:
         100.0 * weight / LOAD, rel=1e-3
     )
     assert table.loc["segment[1].load", "tip_at_rest"] == pytest.approx(1.0, rel=1e-6)
-    note = "Refused with 1 % more, so that the change is that with 1 % less: gravity.angle."
-    assert note in " ".join(capsys.readouterr().out.split())
+    longer = 100.0 * (1.01**4 - 1.0)
+    assert table.loc["segment[1].length", "tip_at_rest"] == pytest.approx(longer, rel=0.01)
+    told = " ".join(capsys.readouterr().out.split())
+    for way, other, keys in (
+        ("less", "more", "segment[1].length."),
+        ("more", "less", "segment[1].masses[1].x and gravity.angle."),
+    ):
+        assert (
+            f"Refused with 1 % {way}, so that the change is that with 1 % {other}: {keys}" in told
+        )
 
 
 SD = 5.0

@@ -147,13 +147,11 @@ def test_files_are_read_as_spreadsheets_save_them(encoding: str) -> None:
 @pytest.mark.parametrize(
     ("unit", "factor"), [("g", 9.80665), ("cm/s2", 0.01), ("mm/s²", 0.001), ("m/s^2", 1.0)]
 )
-@pytest.mark.parametrize(("keys", "times"), [("", 1.0), ("acceleration = -2.0", -2.0)])
-def test_a_measured_quake_needs_no_acceleration(
-    unit: str, factor: float, keys: str, times: float
-) -> None:
+def test_a_measured_quake_needs_no_acceleration(unit: str, factor: float) -> None:
     """Reference: analytic, the standard gravity 9.80665 m/s², times a given factor."""
-    (base,) = case_of(f"t (s),a ({unit})\n0,0\n0.5,0.3\n", keys, "[[base]]").base
-    assert base.acceleration * base.table[1][1] == pytest.approx(times * 0.3 * factor)
+    for keys, times in (("", 1.0), ("acceleration = -2.0", -2.0)):
+        (base,) = case_of(f"t (s),a ({unit})\n0,0\n0.5,0.3\n", keys, "[[base]]").base
+        assert base.acceleration * base.table[1][1] == pytest.approx(times * 0.3 * factor)
 
 
 def test_a_contact_s_file_may_be_in_millimetres_and_kilonewtons() -> None:
@@ -290,6 +288,7 @@ ADDED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("unprinted", "in_this_process")
 @pytest.mark.parametrize("kind", ["at rest", "thrown", "let go"])
 def test_a_boom_without_loads_is_run_and_reported(kind: str) -> None:
@@ -303,9 +302,7 @@ def test_a_boom_without_loads_is_run_and_reported(kind: str) -> None:
     ends = [curve.values["deflection"] for curve in rests.where(segment=rests[-1].segment)]
     assert not ends[-1].any()
     assert any(end.any() for end in ends) == (kind == "let go")
-    tips = results.trajectories["tip"].values
-    assert bool(np.abs(tips).max() > 1e-3) == moves
-    assert Path("out/report.html").is_file()
+    assert bool(np.abs(results.trajectories["tip"].values).max() > 1e-3) == moves
     assert not Path("out/figures").exists()
     assert protractile("report", "--figures", "out") == 0
     assert Path("out/figures/at-rest.png").exists() == (kind == "let go")

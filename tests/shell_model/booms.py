@@ -8,7 +8,6 @@ from functools import cache, partial
 from typing import Any
 
 import numpy as np
-import pytest
 from mpi4py import MPI
 
 from protractile.beam_model.finite_element import finite_element_segments
@@ -26,7 +25,6 @@ from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
 from protractile.shell_model.reduction.krylov import KrylovOptions
 from protractile.shell_model.reduction.segment import ReducedSegment, SegmentInputs, reduce_segments
 from protractile.shell_model.reduction.symmetry import SymmetryReduction
-from studies.reference_models.statics import static_response
 from tests.touching import touching
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
@@ -42,28 +40,22 @@ def box_segment(
     section: Section,
     load: float = 0.0,
     supports: tuple[Support, ...] = (),
-    lateral_load: float = 0.0,
 ) -> Segment:
     """Return a steel segment whose beam data, in both planes, are those of its box."""
-    segment = Segment.of_section(name, start, end, STEEL, section, load=load, supports=supports)
-    return replace(segment, lateral=replace(segment.lateral, load=lateral_load))
-
-
-def two_segments(outer: Section, inner: Section) -> tuple[Segment, Segment]:
-    """Return two segments with the loads and positions of the paper."""
-    return (
-        box_segment("outer", 0.0, 10.0, outer, 83.16, HELD),
-        box_segment("inner", 9.0, 19.0, inner, 55.07),
-    )
+    return Segment.of_section(name, start, end, STEEL, section, load=load, supports=supports)
 
 
 def flat_boom(friction: float = 0.0) -> Boom:
     """Return the paper's flat boom, with normal forces if there is friction."""
     outer = infer_outer_section(83.16 / STEEL.density, 3.7986e-4, 1.5)
     inner = infer_inner_section(55.07 / STEEL.density, 2.1829e-4, outer, LAW.above)
+    segments = (
+        box_segment("outer", 0.0, 10.0, outer, 83.16, HELD),
+        box_segment("inner", 9.0, 19.0, inner, 55.07),
+    )
     pressed = (4500.0, 5000.0) if friction > 0.0 else ()
     joint = Joint(0, 1, (9.0, 10.0), 2.0 * LAW.above, friction=friction, normal_forces=pressed)
-    return Boom(two_segments(outer, inner), (joint,))
+    return Boom(segments, (joint,))
 
 
 def boom_in_space(friction: float = 0.0, sideways: float = 0.0) -> Boom:
@@ -136,16 +128,6 @@ def pressed_rest(system: GapSystem, at: Sequence[bool] | slice = slice(None)) ->
     """Return the equilibrium with springs of 1e12 N/m as contact at some or all rows."""
     rows = system.rows[at]
     return np.asarray(np.linalg.solve(np.diag(system.omega2) + 1.0e12 * rows.T @ rows, system.load))
-
-
-def assert_rests_as_beams(system: GapSystem, boom: Boom, rel: float) -> None:
-    """Check all outputs of an equilibrium against bonded Timoshenko elements."""
-    rest, beams = pressed_rest(system), bonded_beams(boom)
-    expected = static_response(beams, beams.load)
-    assert set(beams.observers) <= set(system.observers)
-    for name, observer in beams.observers.items():
-        found = system.observers[name].row @ rest
-        assert found == pytest.approx(observer.row @ expected, rel=rel), name
 
 
 def bonded_beams(boom: Boom, length: float = 0.25) -> GapSystem:

@@ -1,36 +1,40 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The shell of a segment, of boxes and of polygons, and its supports."""
+"""The shell of a segment, of boxes, polygons and tapers, and its supports."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 
-from protractile.beam_model.finite_element import finite_element_segment
-from protractile.dynamics.gap_system import GapSystem
+from protractile.beam_model.finite_element import finite_element_segment, finite_element_segments
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.excitation import Step
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import PointMass, Support
+from protractile.geometry.boom import Boom, Diaphragm, Joint, Pad, PointMass, Segment, Support
 from protractile.geometry.box import BoxSection
 from protractile.geometry.contact_places import ContactInterval
-from protractile.geometry.polygon import PolygonSection
-from protractile.geometry.section import Section
+from protractile.geometry.load import Load
+from protractile.geometry.polygon import bent
+from protractile.geometry.profiles import hexagon, u_section
+from protractile.geometry.section import COMPONENT, Section
+from protractile.geometry.taper import mean_area
+from protractile.shell_model.boom_shell import ShellOptions, assemble_segments
+from protractile.shell_model.contact.rows import ShellContacts
+from protractile.shell_model.contact.surface import SurfaceOptions
 from protractile.shell_model.contact.wall_rows import CornerLines, Wall, WallPoints
+from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.reduction.krylov import KrylovOptions
 from protractile.shell_model.reduction.symmetry import SymmetryReduction
 from protractile.shell_model.segment.cross_section import Row
+from protractile.shell_model.stress.lines import lines
 from studies import sections
+from studies.reference_models.statics import static_response
 from tests.beam_model.exact import frequencies
-from tests.shell_model.booms import (
-    HELD,
-    STEEL,
-    assert_rests_as_beams,
-    box_segment,
-    flat_boom,
-    reduce_segment,
-    reduced,
-    two_segments,
-)
+from tests.shell_model.booms import HELD, STEEL, box_segment, reduce_segment
 from tests.shell_model.conftest import BOX, UNEQUAL, box_shell, compliance
+from tests.touching import touching
 
 YOUNG, SHEAR = STEEL.youngs_modulus, STEEL.shear_modulus
 
@@ -91,8 +95,7 @@ def test_frequencies_with_a_tip_mass_are_the_beams_in_each_plane() -> None:
 
 
 LINEAR = sections.LAW
-(HEXAGON, _), (OCTAGON, _), (U, INNER_U) = sections.SHAPES.values()
-UNEQUAL_BOXES = UNEQUAL, BoxSection(0.46, 0.28, flange=0.008, web=0.005, bottom_flange=0.005)
+HEXAGON, OCTAGON, U = (outer for outer, _ in sections.SHAPES.values())
 SECTIONS = pytest.mark.parametrize(
     "section", [HEXAGON, OCTAGON, U, UNEQUAL], ids=["hexagon", "octagon", "u", "unequal box"]
 )
@@ -142,39 +145,95 @@ def test_contacts_read_the_true_faces(section: Section) -> None:
         assert _read(row, field) == pytest.approx(face.offset, rel=1.0e-9)
 
 
+ENDS: Mapping[str, tuple[Section, Section]] = {
+    "box": (BoxSection(0.4, 0.3, 0.008, 0.006), BoxSection(0.25, 0.2, 0.006, 0.006)),
+    "unequal box": (
+        BoxSection(0.4, 0.3, 0.006, 0.006, bottom_flange=0.010),
+        BoxSection(0.22, 0.25, 0.006, 0.005, bottom_flange=0.008),
+    ),
+    "bends": (
+        bent(hexagon(0.40, 0.36, 0.2, 0.006, 0.006, 0.006), 0.03),
+        bent(hexagon(0.25, 0.26, 0.15, 0.006, 0.006, 0.006), 0.02),
+    ),
+    "U": (
+        u_section(0.40, 0.34, 0.12, 3, top=0.008, bottom=0.006, web=0.006),
+        u_section(0.25, 0.24, 0.08, 3, top=0.006, bottom=0.005, web=0.005),
+    ),
+}
+CLAMP = Support(0.0, "clamped")
+
+
+def cantilever(shape: str) -> Boom:
+    tail, head = ENDS[shape]
+    more = {"supports": (CLAMP,), "diaphragms": (Diaphragm(8.0, 0.006),)}
+    arm = Segment.of_section("arm", 0.0, 8.0, STEEL, tail, head_section=head, **more)
+    return Boom((arm,), (), (Load(0, "z", 1.0, 8.0, Step()),))
+
+
 @pytest.mark.slow
-def test_a_box_written_as_a_polygon_is_the_box() -> None:
-    """Reference: other code, the box: frequencies and compliances of rows."""
-    boxes = BoxSection(0.50, 0.32, 0.008, 0.006), BoxSection(0.46, 0.28, 0.006, 0.005)
-    polygons = [
-        PolygonSection(
-            tuple(plate.start for plate in box.plates),
-            tuple(plate.thickness for plate in box.plates),
-        )
-        for box in boxes
-    ]
-    assert polygons[0].shear_area != boxes[0].shear_area
-    box, polygon = (
-        replace(flat_boom(), segments=two_segments(*pair)) for pair in (boxes, polygons)
+def test_a_taper_bends_as_its_beam_and_its_section_forces_are_those_of_statics() -> None:
+    """Reference: other code, Timoshenko elements; by hand, M = −1000 s and V = 1000 N.
+
+    Inclined flanges carry 40 % across.
+    """
+    boom = cantilever("unequal box")
+    models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
+    beam, shell = gap_system(boom, models), reduce_boom(boom, ShellOptions(0.1), MPI.COMM_SELF)
+    expected, rest = (
+        static_response(system, system.excitations[0].load) for system in (beam, shell.system)
     )
-    first, second = (reduced(boom, 0.5, law=LINEAR).system for boom in (box, polygon))
-    assert second.omega2 == pytest.approx(first.omega2, rel=1e-9, abs=1e-6)
-    assert _compliance(second) == pytest.approx(_compliance(first), rel=1e-9)
-
-
-def _compliance(system: GapSystem) -> Array:
-    """Return the compliance of rows and tip at σ = 1e4 rad²/s²."""
-    rows = np.vstack([system.rows, system.observers["tip"].row])
-    return np.asarray(rows / (system.omega2 + 1.0e4) @ rows.T)
+    tip = beam.observers["tip"].row @ expected
+    assert shell.system.observers["tip"].row @ rest == pytest.approx(tip, rel=1.0e-2)
+    (line,) = lines(shell.fields, boom)
+    found = line.read(1000.0 * rest)
+    inside = (line.x > 0.8) & (line.x < 7.2)
+    s = 8.0 - line.x[inside]
+    np.testing.assert_allclose(found["moment"][inside], -1000.0 * s, rtol=0.01)
+    np.testing.assert_allclose(found["shear"][inside], 1000.0, rtol=0.02)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("pair", "rel"),
-    [((U, INNER_U), 1.5e-2), (UNEQUAL_BOXES, 5.0e-3)],
-    ids=["u", "unequal box"],
-)
-def test_a_pressed_boom_rests_as_its_beams_do(pair: tuple[Section, Section], rel: float) -> None:
-    """Reference: other code, bonded Timoshenko elements; boxes are 0.25 % apart without collars."""
-    plain = sections.boom_of(*pair)
-    assert_rests_as_beams(reduced(plain, 0.25, law=LINEAR).system, plain, rel)
+@pytest.mark.parametrize("shape", ENDS)
+def test_walls_of_a_taper_are_on_the_local_section(shape: str) -> None:
+    """Reference: by hand. Nodes on the local section; the beam's mass; halves have 1 N/m."""
+    boom = cantilever(shape)
+    (shell,) = assemble_segments(boom, ShellOptions(mesh_size=0.2), MPI.COMM_SELF)
+    segment, mesh = boom.segments[0], shell.mesh
+    points, walls = mesh.points, np.unique(mesh.triangles[mesh.on_walls])
+    for point in points[walls]:
+        assert segment.section_at(point[0]).on_plates(point[None, 1:]).all()
+
+    def felt(load: Array, beyond: float) -> float:
+        moved = np.zeros_like(load)
+        moved[shell.node_dofs[shell.nodes[:, 0] > beyond, 2]] = 1.0
+        return float(load @ moved)
+
+    # What acts on the clamped outline is not there.
+    assert 2.9 < felt(shell.uniform("z", (0.0, 3.0)), -1.0) < 3.0
+    assert felt(shell.uniform("z", (3.0, 8.0)), -1.0) == pytest.approx(5.0, rel=1e-3)
+    weight = STEEL.density * 4.0 * mean_area(segment.section_at(4.0), segment.section_at(8.0))
+    found = segment.mass_per_length * felt(shell.plain_loads["z"], 4.0)
+    assert found == pytest.approx(weight, rel=2e-2)
+
+
+def test_pads_lie_on_tapered_walls() -> None:
+    """Reference: by hand. A translation of 1 m gives 1 m, a rotation of 1 rad the pad's x."""
+    tails = ENDS["box"][0], BoxSection(0.30, 0.22, 0.006, 0.005)
+    heads = BoxSection(0.34, 0.26, 0.008, 0.006), BoxSection(0.18, 0.14, 0.004, 0.004)
+    outer = Segment.of_section("outer", 0.0, 6.0, STEEL, tails[0], head_section=heads[0])
+    inner = Segment.of_section("inner", 5.0, 10.0, STEEL, tails[1], head_section=heads[1])
+    joint = Joint(0, 1, (5.0, 6.0), play=0.008, pad=Pad(0.12, 0.05), lateral_play=0.01)
+    boom = Boom((replace(outer, supports=(CLAMP,)), inner), (joint,))
+    shells = assemble_segments(boom, ShellOptions(mesh_size=0.3), MPI.COMM_SELF)
+    seen, shell = touching(boom, LINEAR, LINEAR), shells[1]
+    made = ShellContacts.from_shells(seen, shells, "near webs", SurfaceOptions())
+    contacts = made.rows({}).contacts
+    assert len(contacts) == 16
+    for contact in contacts:
+        station = boom.stations[contact.station]
+        moved, turned = np.zeros((2, shell.free.size))
+        column = shell.node_dofs[:, COMPONENT[station.direction]]
+        moved[column], turned[column] = 1.0, shell.nodes[:, 0]
+        row = shell.row(contact.operator[1])
+        place = 5.06 if station.x == 5.0 else 5.94
+        assert [row @ moved, row @ turned] == pytest.approx([1.0, place], rel=1e-9)

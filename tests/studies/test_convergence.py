@@ -255,15 +255,3 @@ def test_gallery_page_equals_the_output_of_its_script() -> None:
         assert path.stat().st_size < 320_000
         with Image.open(path) as image:
             image.verify()
-
-
-def test_missing_run_is_named(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(gallery, "RUNS", tmp_path / "out")
-    monkeypatch.setattr(gallery, "GALLERY", tmp_path / "gallery")
-    assert gallery.main() == 2
-    missing = tmp_path / "out" / "paper" / "snapshots" / "boom-first-peak.png"
-    assert capsys.readouterr().err == (
-        f"gallery: {missing}: file: missing; run the case with its shell, or make verify\n"
-    )

@@ -94,10 +94,6 @@ def test_contradicted_statements_exclude_and_undecided_ones_do_not() -> None:
         "stiffness literal: all excluded, by S2 1 times, S9 1 times.",
         "stiffness restored: none excluded.",
     ]
-    pinned = [judged(replace(one, base="pinned")) for one in (LITERAL, RESTORED)]
-    assert "stiffness literal: 1 of 2 excluded, by S2 1 times, S9 1 times." in conclude(
-        [*verdicts, *pinned]
-    )
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,6 @@ from studies.numerics_1997.survey import (
     WITH,
     WITHOUT,
     Survey,
-    diverges_near_7_s,
     solve,
 )
 from tests.modal import modal_system, oscillator
@@ -92,25 +91,12 @@ def rubbing(force: float) -> GapSystem:
 @pytest.mark.parametrize("scheme", ALL, ids=str)
 @pytest.mark.parametrize("phase", [0.1, 0.628, 1.5])
 def test_an_oscillator_turns_as_the_textbook_says(scheme: Scheme, phase: float) -> None:
-    """Reference: analytic, roots of the amplification matrix, Bathe 1996, section 9.4."""
-    assert measured_root(scheme, phase) == pytest.approx(textbook_root(scheme, phase), rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("scheme", "phase", "low", "high"),
-    [(NEWMARK, 50.0, 0.9, 1.0 + 1e-9), (WILSON, 50.0, 100.0, 1e6), (CENTRAL, 1.98, 1.0, 10.0),
-     (CENTRAL, 2.02, np.inf, np.inf)],
-)  # fmt: skip
-def test_long_steps_overshoot_or_break_out(
-    scheme: Scheme, phase: float, low: float, high: float
-) -> None:
-    """Reference: analytic. At ω h = 50 Wilson's scheme overshoots 1 m (Goudreau and Taylor 1973),
-    and Newmark's does not; central differences are stable for ω h < 2 only.
+    """Reference: analytic, roots of the amplification matrix, Bathe 1996, section 9.4. Central
+    differences are stable for ω h < 2 only.
     """
-    run = integrate(Motion(oscillator(), 100.0 * phase, phase, position=np.ones(1)), scheme, False)
-    far = np.abs(run.trajectory.states).max()
-    assert low <= np.nan_to_num(far, nan=np.inf) <= high
-    assert (run.finite_steps < 100) == np.isinf(high)
+    assert measured_root(scheme, phase) == pytest.approx(textbook_root(scheme, phase), rel=1e-9)
+    lost = integrate(Motion(oscillator(), 202.0, 2.02, position=np.ones(1)), CENTRAL, False)
+    assert lost.finite_steps < 100
 
 
 @pytest.mark.parametrize("scheme", ALL, ids=str)
@@ -143,13 +129,6 @@ def test_sliding_dissipates_the_work_of_friction() -> None:
         assert float(run.states[-1, 0]) == pytest.approx(0.75, abs=1e-9)
         assert float(run.data["friction_loss"][-1]) == pytest.approx(0.375, abs=1e-9)
         assert run.energy_residual < 1e-9
-
-
-def test_friction_stop_within_a_step_does_not_converge() -> None:
-    """Reference: by hand. At rest after 1 s, the sign of the speed changes with every iteration."""
-    run = integrate(Motion(rubbing(1.0), 2.0, 0.03, velocity=np.ones(1)), NEWMARK, True)
-    assert not run.unconverged[:33].any()
-    assert run.unconverged[33:].mean() > 0.4
 
 
 TIME = np.arange(0.0, 10.0, 1.6e-3)
@@ -185,17 +164,6 @@ def test_peaks_conform_and_part(others: Array, gained: float, early: float, late
     assert found.conforms_then_diverges(CUTOFF) == (late > 0.2)
 
 
-def test_the_series_solved_well_take_the_place_of_those_of_then() -> None:
-    """Reference: by construction, series of 1 and 2 m beside the elements of then."""
-    accurate = sample(swing(), 2.0 * swing(), 3.0 * swing())
-    found = sample(swing(), swing(), swing(late=0.4))
-    example = Example(shipped("paper"), {}, CUTOFF, [accurate])
-    (mixed,) = example.with_accurate_series([found])
-    heights = [np.abs(one.tip).max() for one in mixed.models]
-    assert heights == pytest.approx([1.0, 2.0, 1.0], rel=1e-3)
-    assert mixed.elements is found.elements
-
-
 @pytest.mark.parametrize(("head", "stratifies"), [(0.1, False), (1.0, True)])
 def test_s7_takes_all_of_its_parts(head: float, stratifies: bool) -> None:
     """Reference: by hand, ±1 m and a tenth more after 6 s, which is 0.1 of 2.2. Heads differ by 0
@@ -206,14 +174,6 @@ def test_s7_takes_all_of_its_parts(head: float, stratifies: bool) -> None:
     found = Sample(runs, moved(0.05 * tips[0]))
     assert found.tip_distances() == pytest.approx((0.0, 0.1 / 2.2), rel=0.01)
     assert found.stratifies() == stratifies
-
-
-@pytest.mark.parametrize(("gained", "breaks"), [(0.9, np.inf), (-2.0, np.inf), (1.1, 6.5)])
-def test_energy_gain_beyond_the_work_is_divergence(gained: float, breaks: float) -> None:
-    """Reference: by hand, gains of an energy of 1 J."""
-    run = moved(swing(), gained=gained, since=6.5)
-    assert run.divergence_time == pytest.approx(breaks, abs=2e-3)
-    assert diverges_near_7_s(sample(swing(), gained=gained, since=6.5)) == np.isfinite(breaks)
 
 
 @pytest.mark.parametrize("method", METHODS)

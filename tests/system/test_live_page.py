@@ -21,21 +21,12 @@ pytestmark = pytest.mark.slow
 
 # Sets a field as a user does.
 SET = (
-    "(e => {{ e.value = {}; e.dispatchEvent(new Event('input')); }})"
-    "(document.getElementById('number {}'))"
-)
-SLIDE = (
-    "(e => {{ e.value = {}; e.dispatchEvent(new Event('input')); }})"
-    "(document.querySelector('input[type=range][aria-label=\"{}\"]'))"
+    "(e => {{ e.value = {}; e.dispatchEvent(new Event('input')); }})(document.querySelector('{}'))"
 )
 ANSWERED = "document.body.dataset.answered == number"
 REFUSED = "document.getElementById('shown').classList.contains('stale')"
 # Height of the tip in the picture, in m.
 END = "Math.max(...document.getElementById('boom').data[1].y)"
-ROW = (
-    "[...document.querySelectorAll('#{} tr')].find(r => r.cells[0].textContent.startsWith('{}'))"
-    ".cells[1].textContent"
-)
 
 
 # Words of labels, headings and first cells that stand on two lines.
@@ -49,13 +40,6 @@ BROKEN_WORDS = """
       return new Set([...range.getClientRects()].map(one => Math.round(one.top))).size > 1;
     }).map(word => word[0])))
 """
-
-
-@contextmanager
-def live_page(case: str, profile: Path) -> Iterator[Page]:
-    """Yield the live page of a shipped case, with its first results."""
-    with served_page(case, profile) as (page, _):
-        yield page
 
 
 @contextmanager
@@ -78,59 +62,65 @@ def served_page(case: str, profile: Path) -> Iterator[tuple[Page, LivePage]]:
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
-    with live_page("lift.toml", tmp_path_factory.mktemp("profile")) as opened:
+    with served_page("lift.toml", tmp_path_factory.mktemp("profile")) as (opened, _):
         yield opened
 
 
-def tip(page: Page) -> float:
+def put(page: Page, key: str, value: float, field: str = '[id="number {}"]') -> None:
+    """Set a number of the page, and wait for its results."""
+    page.evaluate(SET.format(value, field.format(key)))
+    page.wait_for(ANSWERED)
+
+
+def shown(page: Page, table: str, row: str, cell: int = 1) -> str:
+    """Return the text of a cell of the first row of a table with this beginning."""
+    rows = f"[...document.querySelectorAll('#{table} tr')]"
+    found = f"{rows}.find(r => r.cells[0].textContent.startsWith('{row}'))"
+    return str(page.evaluate(f"{found}.cells[{cell}].textContent"))
+
+
+def tip(page: Page, cell: int = 1) -> float:
     """Return the static tip deflection under the maximum load in mm."""
-    text = page.evaluate(ROW.format("rest", "Static tip deflection (maximum load)"))
+    text = shown(page, "rest", "Static tip deflection (maximum load)", cell)
     return float(re.sub(r"[^0-9.−]", "", text).replace("−", "-"))
 
 
 def test_a_slider_changes_numbers_and_pictures(page: Page) -> None:
     """Reference: physics. More payload lowers the tip, also in the picture."""
     before, drawn = tip(page), page.evaluate(END)
-    moved = page.evaluate(ROW.format("motion", "Maximum dynamic"))
-    page.evaluate(SLIDE.format(300, "Payload"))
-    page.wait_for(ANSWERED)
+    moved = shown(page, "motion", "Maximum dynamic")
+    put(page, "Payload", 300, 'input[type=range][aria-label="{}"]')
     assert page.evaluate("document.getElementById('number payload.mass').value") == "300"
     assert tip(page) < before - 20.0
     # The boom leans at 45 degrees and is drawn to scale.
-    assert page.evaluate(END) - drawn == pytest.approx(
-        1e-3 * (tip(page) - before) / 2**0.5, rel=0.05
-    )
-    assert page.evaluate(ROW.format("motion", "Maximum dynamic")) != moved
-    page.evaluate(SET.format(150, "payload.mass"))
-    page.wait_for(ANSWERED)
+    lower = 1e-3 * (tip(page) - before) / 2**0.5
+    assert page.evaluate(END) - drawn == pytest.approx(lower, rel=0.05)
+    assert shown(page, "motion", "Maximum dynamic") != moved
+    put(page, "payload.mass", 150)
     assert tip(page) == before
 
 
 def test_a_refusal_stands_at_its_field(page: Page) -> None:
-    page.evaluate(SET.format(-1, "joint.play"))
+    page.evaluate(SET.format(-1, '[id="number joint.play"]'))
     page.wait_for(REFUSED)
-    message = (
-        "document.getElementById('number joint.play').closest('.control').querySelector('.message')"
-    )
-    assert page.evaluate(f"{message}.textContent") == "must be a number not less than 0, got -1"
-    page.evaluate(SET.format(0.003, "joint.play"))
-    page.wait_for(f"{ANSWERED} && !{REFUSED}")
-    assert page.evaluate(f"{message}.textContent") == ""
+    field = "document.getElementById('number joint.play')"
+    message = f"{field}.closest('.control').querySelector('.message').textContent"
+    assert page.evaluate(message) == "must be a number not less than 0, got -1"
+    put(page, "joint.play", 0.003)
+    page.wait_for(f"!{REFUSED}")
+    assert page.evaluate(message) == ""
 
 
 def test_the_last_of_many_changes_is_shown(page: Page) -> None:
-    for mass in (160, 170, 180, 190, 200):
-        page.evaluate(SET.format(mass, "payload.mass"))
-    page.wait_for(ANSWERED)
+    for mass in (160, 170, 180, 190):
+        page.evaluate(SET.format(mass, '[id="number payload.mass"]'))
+    put(page, "payload.mass", 200)
     last = tip(page)
-    page.evaluate(SET.format(150, "payload.mass"))
-    page.wait_for(ANSWERED)
+    put(page, "payload.mass", 150)
     before = tip(page)
-    page.evaluate(SET.format(200, "payload.mass"))
-    page.wait_for(ANSWERED)
+    put(page, "payload.mass", 200)
     assert tip(page) == last < before
-    page.evaluate(SET.format(150, "payload.mass"))
-    page.wait_for(ANSWERED)
+    put(page, "payload.mass", 150)
 
 
 def test_any_other_number_is_found(page: Page) -> None:
@@ -149,20 +139,15 @@ def test_any_other_number_is_found(page: Page) -> None:
 
 
 def test_pinned_results_stand_beside_new_ones(page: Page) -> None:
-    before = page.evaluate(ROW.format("rest", "Static tip deflection (maximum load)"))
+    before = tip(page)
+    curves = "document.getElementById('tip').data.length"
     page.evaluate("document.getElementById('pin').click()")
-    page.evaluate(SET.format(0.005, "joint.play"))
-    page.wait_for(ANSWERED)
-    pinned = ROW.format("rest", "Static tip deflection (maximum load)").replace(
-        "cells[1]", "cells[2]"
-    )
-    assert page.evaluate(pinned) == before
-    assert page.evaluate(ROW.format("rest", "Static tip deflection (maximum load)")) != before
-    assert page.evaluate("document.getElementById('tip').data.length") == 2
+    put(page, "joint.play", 0.005)
+    assert tip(page, 2) == before != tip(page)
+    assert page.evaluate(curves) == 2
     page.evaluate("document.getElementById('pin').click()")
-    page.evaluate(SET.format(0.003, "joint.play"))
-    page.wait_for(ANSWERED)
-    assert page.evaluate("document.getElementById('tip').data.length") == 1
+    put(page, "joint.play", 0.003)
+    assert page.evaluate(curves) == 1
 
 
 def test_the_case_is_saved_with_its_changes(page: Page) -> None:
@@ -171,13 +156,12 @@ def test_the_case_is_saved_with_its_changes(page: Page) -> None:
         "URL.createObjectURL = blob => { blob.text().then(text => { window.saved = text; });"
         " return 'data:,'; }"
     )
-    page.evaluate(SET.format(0.004, "joint.play"))
+    put(page, "joint.play", 0.004)
     page.evaluate("document.getElementById('save').click()")
     page.wait_for("window.saved")
     case = Case.model_validate(tomllib.loads(page.evaluate("saved")))
     assert [joint.play for joint in case.joints] == [0.004, 0.004]
-    page.evaluate(SET.format(0.003, "joint.play"))
-    page.wait_for(ANSWERED)
+    put(page, "joint.play", 0.003)
 
 
 def test_a_shell_runs_beside_the_beam(tmp_path: Path) -> None:
@@ -204,16 +188,8 @@ def test_a_shell_runs_beside_the_beam(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("width", [400, 800, 1200])
 def test_the_page_fits_its_window(page: Page, width: int) -> None:
+    """Reference: the browser, which draws a whole word in one rectangle. It has no complaints."""
     page.set_width(width)
     page.wait_for(f"document.documentElement.scrollWidth <= {width}")
-
-
-@pytest.mark.parametrize("width", [400, 800, 1200])
-def test_no_word_of_a_label_breaks(page: Page, width: int) -> None:
-    """Reference: the browser, which draws a whole word in one rectangle."""
-    page.set_width(width)
     assert page.evaluate(BROKEN_WORDS) == []
-
-
-def test_the_browser_has_nothing_to_complain_of(page: Page) -> None:
     assert page.complaints == []
