@@ -52,6 +52,7 @@ def test_the_guide_finds_the_twin(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("in_this_process", "unprinted")
 def test_the_commands_write_their_folders(tmp_path: Path) -> None:
     """Reference: the guide, which names the files; the identified case is a case."""
     case = str(EXAMPLES / "measured-boom.toml")

@@ -199,7 +199,6 @@ def test_only_the_first_compilation_is_announced(
     assert len(caplog.messages) == 1
 
 
-@pytest.mark.slow
 def test_large_first_differences_are_no_chaos() -> None:
     """Reference: other code path, a fixed step. Motions in which the first steps compared differ by
     2 to 10 % of the range converge, since few impacts have amplified the error.

@@ -169,7 +169,6 @@ def test_plates_have_their_thicknesses() -> None:
     assert mesh.thickness @ areas(mesh) == pytest.approx(walls + collar + closing, rel=1e-12)
 
 
-@pytest.mark.slow
 @settings(max_examples=25)
 @given(
     spans=st.lists(st.floats(0.013, 3.7), min_size=1, max_size=4),

@@ -54,6 +54,7 @@ def test_check_returns_the_output_of_the_command(capsys: pytest.CaptureFixture[s
     assert all(f"<b>{title}</b>" in page for title in found.frames)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("in_this_process", "few_figures", "unprinted")
 def test_python_writes_the_files_of_the_commands(tmp_path: Path) -> None:
     """Reference: other code path, a run and a sweep, to the bit."""

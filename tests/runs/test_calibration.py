@@ -65,6 +65,7 @@ def rubbing_case(tmp_path_factory: pytest.TempPathFactory) -> pt.Case:
     return read_case(tmp_path_factory.mktemp("case"), RUBBING + CALIBRATED)
 
 
+@pytest.mark.slow
 def test_a_calibrated_beam_gives_way_and_moves_as_the_shell(
     rubbing_case: pt.Case, tmp_path: Path
 ) -> None:

@@ -83,6 +83,7 @@ def trees() -> dict[str, ast.Module]:
     }
 
 
+@pytest.mark.slow
 def test_imports_point_downwards(trees: dict[str, ast.Module]) -> None:
     """Nothing imports itself by way of others, also for types. Geometry knows contact laws only."""
     graph, typed = (
@@ -129,6 +130,7 @@ def test_options_import_no_numerical_library() -> None:
     assert not modules & (OF_RUNS | OF_CHECKS)
 
 
+@pytest.mark.slow
 def test_keys_and_commands_of_clients_exist_by_registration() -> None:
     """Reference: by construction."""
     alone = f"from protractile.runs import clients; clients.CLIENTS = ()\n{PROGRAM}"
@@ -140,6 +142,7 @@ def test_keys_and_commands_of_clients_exist_by_registration() -> None:
     assert keys[0] - keys[1] == {"chart", "measured", "statements", "demand"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("command", "case"), [("check", "spatial"), ("prove", "inspection-arm")])
 def test_check_and_prove_import_neither_solvers_nor_figures(command: str, case: str) -> None:
     out, modules = answer(command, str(CASES / f"{case}.toml"))
