@@ -113,7 +113,7 @@ imitate: ## `make test` as on three other processors
 fuzz: $(READY) ## a thousand valid and wrong cases, load files, command lines and Python calls
 	$(BIN)/python -m tests.fuzz
 
-torture: $(READY) ## full disks, kills, flipped bits, shared folders: losses, as a table
+torture: $(READY) ## full disks, kills, shared folders: losses, as a table
 	NUMBA_NUM_THREADS=1 $(BIN)/python -m tests.torture
 
 quick: $(READY) ## the quick tests alone

@@ -185,6 +185,7 @@ def test_a_history_has_the_largest_stress_of_each_interval() -> None:
     assert read.place == 2.0
 
 
+@pytest.mark.slow
 def test_a_motion_is_evaluated_as_a_run_of_a_case() -> None:
     """Reference: other code path, the tip of the trajectory and the deflection at rest."""
     gust = force("fly", 14.0, -500.0, history=pt.Ramp(0.1))

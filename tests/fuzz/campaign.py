@@ -10,7 +10,7 @@ from random import Random
 from tempfile import TemporaryDirectory
 
 from protractile.runs import CASES
-from tests.fuzz import cases, command_lines, contract, histories, python_calls, valid
+from tests.fuzz import cases, command_lines, contract, python_calls, valid
 
 # Kinds of input, and their shares.
 KINDS = {
@@ -47,7 +47,7 @@ def prepare(seed: int, folder: Path) -> list[str]:
     if kind == "history":
         table = '[[base]]\nacceleration = 1.0\nfile = "history.csv"\n\n[[model]]'
         text = text.replace("[[model]]", table, 1)
-        histories.put(folder / "history.csv", random)
+        (folder / "history.csv").write_bytes(cases.history(random))
     if kind.startswith("command"):
         draw = command_lines.usual if kind == "command" else command_lines.mutate
         arguments = draw(random)

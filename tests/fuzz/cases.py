@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Case files with errors in values, keys, tables or bytes."""
+"""Case files and histories with errors in values, keys, tables or bytes."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -118,6 +118,18 @@ def _other_letters(text: str, random: Random) -> str:
 
 def _cut(text: str, random: Random) -> str:
     return text[: random.randrange(len(text) + 1)]
+
+
+def history(random: Random) -> bytes:
+    """Return the file of a load history, damaged, in another layout or encoding."""
+    text = "t [s],a [m/s²]\n" + "".join(f"{0.1 * i:g},{i % 3}\n" for i in range(9))
+    text = text.replace(",", random.choice((",", ", ", ";", "\t", " ")))
+    text = text.replace("\n", random.choice(("\n", "\r\n", "\r")))
+    for _ in range(random.choice((0, 1, 1, 2))):
+        text = random.choice((_other_number, _other_letters, _cut))(text, random)
+    encodings = "utf-8", "utf-8", "utf-8-sig", "utf-16", "utf-32", "cp1252", "cp500"
+    whole = text * random.choice((1, 1, 1, 1, 20_000))
+    return whole.encode(random.choice(encodings), "replace")
 
 
 _MUTATIONS: Mapping[Callable[[str, Random], str], float] = {

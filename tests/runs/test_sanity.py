@@ -212,6 +212,7 @@ def test_usual_booms_have_no_cautions(tmp_path: Path) -> None:
         assert cautions(Context(checked.case, checked.boom), OF_INPUTS) == [], path
 
 
+@pytest.mark.slow
 def test_folds_at_a_head_are_walls_too(tmp_path: Path) -> None:
     """Reference: by hand. A chamfer of 30 mm is √2 · 30 mm wide."""
     octagon = (

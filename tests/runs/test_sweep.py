@@ -247,6 +247,7 @@ def written(sweeping: Plan, *quantities: str) -> list[str]:
     return sorted(path.name for path in Path("out/figures").glob("*.png"))
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("unprinted")
 def test_three_keys_are_lines_in_several_charts(planned: Planned) -> None:
     """Reference: by hand, one chart for each two of the third and second keys' values."""

@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
-from tests.torture import flipped_bits, full_disk, kills, shared_cache
+from tests.torture import full_disk, kills, shared_cache
 from tests.torture.shared_cache import Row
 
 pytestmark = pytest.mark.slow
@@ -19,16 +19,14 @@ BEAM = "--models", "beam-fe-bonded"
 @pytest.mark.parametrize(
     ("rows", "count"),
     [
-        (lambda folder: flipped_bits.rows(folder, 3), 2),
         (lambda folder: full_disk.rows(folder, 2), 6),
         (lambda folder: kills.rows(folder, 1, {"run": kills.COMMANDS["run"]}), 1),
         (lambda folder: [shared_cache.together(folder, 1, BEAM, "aa")], 1),
     ],
-    ids=["flipped bits", "full disk", "killed", "one folder"],
+    ids=["full disk", "killed", "one folder"],
 )
-def test_nothing_is_lost_or_wrong_and_believed(
-    tmp_path: Path, rows: Callable[[Path], Iterable[Row]], count: int
-) -> None:
+def test_nothing_is_lost(tmp_path: Path, rows: Callable[[Path], Iterable[Row]], count: int) -> None:
+    """Reference: what an undisturbed command leaves."""
     found = list(rows(tmp_path))
     assert len(found) == count
     for name, tries, breaches, what in found:
