@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Static states of shipped booms, and cautions for values out of usual ranges."""
+"""Static states of shipped booms, and cautions: values out of usual ranges, walls that bend."""
 
 import re
 from math import cos, radians
@@ -8,20 +8,40 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from protractile.analysis.model import AnalysisModel
+from protractile.analysis.plate_buckling import (
+    measure_plates,
+    weakest_plates,
+)
+from protractile.analysis.rows import INITIAL, REST, Rows, extremes, static_rows
+from protractile.analysis.states import States
 from protractile.beam_model.statics import static_state
+from protractile.dynamics.line import Line
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Joint, Segment
+from protractile.geometry.box import BoxSection
 from protractile.runs import CASES
+from protractile.runs.case import reading
 from protractile.runs.case.build import build_boom
+from protractile.runs.case.reading import CheckedCase
 from protractile.runs.cautions import rules
-from protractile.runs.cautions.context import Context
+from protractile.runs.cautions.context import Context, State
+from protractile.runs.cautions.response import bulges
+from protractile.runs.check import check_case
+from protractile.runs.pipeline.beam_states import static_states
+from protractile.runs.pipeline.statics import boom_with_play
+from tests.booms import CLAMP
+from tests.booms import STEEL as METAL
+from tests.modal import modal_system
 from tests.runs.case_texts import (
+    CLAMPED,
     HINGED,
     STEEL,
     box,
     edited,
     elements,
     load_checked_text,
+    read_case,
     refusal,
     shipped,
     table,
@@ -261,3 +281,68 @@ def test_a_boom_that_buckles_names_the_likely_unit(tmp_path: Path) -> None:
     found = refusal(tmp_path, edited(LIFT, *slips))
     assert found.startswith("model[1]: the boom of 'beam' buckles under ")
     assert found.endswith("; if it is in N/mm, give 3e+07 N/m")
+
+
+BUCKLING = np.pi**2 * 2.1e11 / (12.0 * 0.91)
+TUBE = BoxSection(height=0.5, width=0.4, flange=0.006, web=0.008)
+OF_FLANGE, OF_WEB = BUCKLING * (0.006 / 0.4) ** 2, BUCKLING * (0.008 / 0.5) ** 2
+
+
+@pytest.mark.parametrize(
+    ("curves", "wall", "x", "factor"),
+    [
+        ({"moment": [0.0, 1e5]}, "bottom", 2.0,
+         4.0 * OF_FLANGE / (1e5 * 0.25 / TUBE.second_moment_of_area)),
+        ({"normal": [-0.5e6, -1e6]}, "bottom", 2.0, 4.0 * OF_FLANGE * TUBE.area / 1e6),
+        # A positive moment presses the fibres with y < 0, on the left.
+        ({"lateral_moment": [0.0, 1e5]}, "left", 2.0,
+         4.0 * OF_WEB / (1e5 * 0.2 / TUBE.lateral_second_moment_of_area)),
+        ({"torque": [1e5, 1e4]}, "bottom", 0.0,
+         5.34 * OF_FLANGE / (1e5 / (2.0 * 0.2 * 0.006))),
+    ],
+)  # fmt: skip
+def test_the_weakest_wall_of_a_segment(
+    curves: dict[str, list[float]], wall: str, x: float, factor: float
+) -> None:
+    """Reference: analytic. Moments and axial forces compress walls, torque shears them."""
+    segment = Segment.of_section("outer", 0.0, 2.0, METAL, TUBE, supports=(CLAMP,))
+    given = {key: [0.0, 0.0] for key in ("deflection", "moment", "normal")} | curves
+    # One coordinate of value 1 has these section forces.
+    line = Line(np.array([0.0, 2.0]), {k: np.array(v)[:, None] for k, v in given.items()}, True)
+    model = AnalysisModel(Boom((segment,), ()), modal_system([1.0], [0.0]), [line])
+    rest = States(model, np.zeros(1), np.ones((1, 1)))
+    (row,) = weakest_plates(Rows(extremes(measure_plates(rest), "beam", REST)))
+    assert (row.place, row.x, row.value) == (wall, x, pytest.approx(factor))
+
+
+def test_check_names_buckling_walls(tmp_path: Path) -> None:
+    """Reference: analytic, the bottom flange of a cantilever under a load at its tip."""
+    section = BoxSection(height=0.4, width=0.3, flange=0.003, web=0.008)
+    unit = BUCKLING * (0.003 / 0.3) ** 2
+    stress = 2.0e5 * 6.0 * 0.2 / section.second_moment_of_area
+    text = f"""
+title = "Thin"
+time = {{ duration = 1.0 }}
+model = [{{ name = "beam", kind = "finite-element" }}]
+load = [{{ segment = "arm", x = "head", magnitude = -2e5 }}]
+{STEEL}{box("arm", 6.0, (0.4, 0.3, 0.003, 0.008), CLAMPED)}
+"""
+    found = check_case(CheckedCase(read_case(tmp_path, text)))
+    (table,) = (one for one in found.tables if one.title == "Buckling of walls, estimate")
+    assert table.rows == [("arm", "bottom", "0", f"{4.0 * unit / stress:.3g}")]
+    (caution,) = (line for line in found.lines if "panel formulas" in line)
+    assert caution.startswith("caution: the wall 'bottom' of 'arm' buckles at")
+
+
+def test_check_names_plays_closed_by_walls() -> None:
+    """Reference: other code, the static shell of the arm with edges of 0.2 m."""
+    checked = reading.load_checked(str(CASES / "inspection-arm.toml"))
+    boom = boom_with_play(checked.case, checked.boom)
+    rows = Rows(static_rows(static_states(checked.case, boom), "beam"))
+    closed = rows.where(state=INITIAL, quantity="closed_play")
+    assert [row.value for row in closed] == pytest.approx(
+        [1.1985e-3, 1.8414e-3, 0.8242e-3, 1.3873e-3], rel=0.02
+    )
+    state = State("in the beam estimate", closed=closed)
+    (caution,) = bulges(Context(checked.case, boom, [state]))
+    assert "1.2 of 4 mm at x = 3.5 m, 1.8 of 4 mm at x = 4.5 m" in caution
