@@ -74,7 +74,7 @@ def test_all_motions_of_a_model_take_the_step_of_the_case(
 ) -> None:
     """Reference: the case. Motions include those without play."""
     found = short(*run, **{"time.step": 4.0e-5})
-    move = Mock(side_effect=FixedStep.__call__, autospec=True)
+    move = Mock(side_effect=FixedStep.__call__)
     monkeypatch.setattr(FixedStep, "__call__", lambda *given: move(*given))
     found.evaluate()
     assert [call.args[0].step for call in move.call_args_list] == motions * [4.0e-5]
@@ -307,9 +307,6 @@ def test_summary_has_horizons_and_slow_peaks(run: Run) -> None:
     level = found.ensembles["kantorovich-4"]
     until = min(ensemble.horizons["0.01"] for ensemble in (four, five))
     assert level.pointwise.until == pytest.approx(until, abs=2e-3)
-    count = len(level.peaks.time)
-    apart = np.subtract(four.slow_peaks.time[:count], five.slow_peaks.time[:count])
-    np.testing.assert_allclose(level.peaks.time, apart, atol=1e-3)
 
 
 def test_figures_have_bands_and_horizons(run: Run) -> None:
