@@ -58,6 +58,7 @@ def test_maximum_load_hangs_for_any_mass(case: Case, mass: float) -> None:
     assert tip < 1.2 * states.observed("tip")[0] < 0.0
 
 
+@pytest.mark.slow
 def test_results_of_a_hoist(case: Case) -> None:
     """Reference: the height at which the load leaves the ground, and the energy balance.
 

@@ -31,6 +31,7 @@ from protractile.runs.process.terminal import LONGEST, message, shorten
 ROOT = Path(__file__).parents[2]
 
 
+@pytest.mark.slow
 def test_closed_and_full_outputs_end_in_one_line_at_most() -> None:
     """The reader of the long schema closes the pipe early; letters of no terminal are replaced."""
 

@@ -207,6 +207,7 @@ def test_damage_of_details(tmp_path: Path, name: str, x: float, category: float)
     assert (one.state, one.x) == ("spectrum day", x)
 
 
+@pytest.mark.slow
 def test_cycles_of_a_motion(tmp_path: Path) -> None:
     """Reference: other code path, a run's fatigue life with half a cycle more of fifty."""
     text = edited(
