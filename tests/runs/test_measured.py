@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Measured channels: their keys and files, their values by a model, comparison."""
+"""Measured channels: keys and files, values by a model, comparison; identified numbers."""
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -10,14 +11,19 @@ import numpy as np
 import pytest
 
 from protractile.cases import load_case, run_case
+from protractile.geometry.arrays import Array
+from protractile.runs import CASES
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.schema import Case
 from protractile.runs.measured.compare import compare
 from protractile.runs.measured.experiment import Experiment, free_travel
-from protractile.runs.measured.residuals import Features
+from protractile.runs.measured.fit import CHI_SQUARE_95, Fit, fit, profile
+from protractile.runs.measured.identify import identify, parse
+from protractile.runs.measured.residuals import STEADY, Features
 from protractile.runs.process.bad_input import BadInput
 from protractile.runs.report.additions import judge
 from protractile.runs.report.document import render
+from tests.runs.case_texts import refused
 
 E, LENGTH, HEIGHT, WIDTH, WALL = 2.1e11, 5.0, 0.3, 0.2, 0.006
 BASE: dict[str, Any] = {
@@ -45,6 +51,10 @@ BOOM = CANTILEVER | {
          "play": 0.004, "stiffness": 1.0e9, "exponent": 1.0}
     ],
 }  # fmt: skip
+
+
+def pairs(curve: Array, times: Array) -> list[tuple[float, float]]:
+    return [*zip(times.tolist(), curve.tolist(), strict=True)]
 
 
 def channel(name: str, **keys: Any) -> dict[str, Any]:
@@ -143,7 +153,7 @@ def swinging(**load: float) -> tuple[dict[str, Any], Any]:
     """Return the tables of a cantilever under a force, and its tip in m at ``TIMES``."""
     loads = [{"segment": "base", "x": "head", "magnitude": -500.0, **load}]
     tables = {**CANTILEVER, "load": loads, "damping": {"modal": 0.02}, "start": {"state": "rest"}}
-    blank = channel("tip", table=[(time, 0.0) for time in TIMES.tolist()])
+    blank = channel("tip", table=pairs(0.0 * TIMES, TIMES))
     ((_, (tip, *_)),) = Experiment(measured(tables, blank), "case").evaluate({})
     return tables, tip
 
@@ -152,7 +162,7 @@ def test_a_model_agrees_with_itself_and_not_with_another() -> None:
     """Reference: by construction. Noise of one uncertainty leaves a misfit of 1, within 3/√(2n)."""
     tables, tip = swinging()
     noise = np.random.default_rng(1).normal(0.0, 1.0e-3, tip.size)
-    table = [*zip(TIMES.tolist(), (tip + noise).tolist(), strict=True)]
+    table = pairs(tip + noise, TIMES)
     right = compare(measured(tables, channel("tip", table=table)))
     (found,) = right.agreements
     assert found.misfit == pytest.approx(1.0, abs=3.0 / np.sqrt(2.0 * tip.size))
@@ -189,7 +199,7 @@ def test_a_wrong_unit_and_a_forgotten_time_offset_are_told(
     tables, tip = swinging(ramp=0.3)
     read_at = TIMES[(TIMES + shift >= 0.0) & (TIMES + shift <= TIMES[-1])]
     late = factor * np.interp(read_at + shift, TIMES, tip)
-    read = channel("tip", table=[*zip(read_at.tolist(), late.tolist(), strict=True)])
+    read = channel("tip", table=pairs(late, read_at))
     (agreement,) = compare(measured(tables, read | {"uncertainty": 1.0e-4})).agreements
     assert agreement.mistakes == ([caution] if caution else [])
 
@@ -264,3 +274,147 @@ def test_the_report_of_a_run_has_the_readings() -> None:
     assert judge(results).tables == []
     results.case = measured(CANTILEVER, channel("frequency", number=900, value=0.0))
     assert judge(results).tables == []
+
+
+X = np.linspace(0.0, 1.0, 40)
+
+
+def test_standard_errors_and_profile_of_a_linear_model() -> None:
+    """Reference: analytic. Regression line: σ/√S_xx, and σ √(1/n + x̄²/S_xx); their correlation."""
+    noise = np.random.default_rng(3).normal(0.0, 0.05, X.size)
+
+    def fitted(noise: Array, upper: float = 9.0, starts: int = 1) -> tuple[Any, Fit]:
+        readings = 2.0 + 3.0 * X + noise
+        line = lambda p: (p[0] + p[1] * X - readings) / 0.1  # noqa: E731
+        return line, fit(line, [-9.0, -9.0], [9.0, upper], [0.0, 0.0], starts)
+
+    line, found = fitted(noise, starts=3)
+    spread = float(np.sum((X - X.mean()) ** 2))
+    errors = [0.1 * np.sqrt(1.0 / X.size + X.mean() ** 2 / spread), 0.1 / np.sqrt(spread)]
+    assert found.errors == pytest.approx(errors, rel=1.0e-6)
+    correlation = -X.mean() / np.sqrt(np.mean(X**2))
+    assert found.correlation == pytest.approx(np.array([[1, correlation], [correlation, 1]]))
+    assert found.values[::-1] == pytest.approx(np.polyfit(X, 2.0 + 3.0 * X + noise, 1), abs=1e-6)
+    assert found.agreeing == 3
+    assert found.determined.all()
+    assert not found.at_bound.any()
+    assert fitted(noise, 1.0)[1].at_bound.tolist() == [False, True]
+    # χ² grows by (distance/standard error)²; by 3.84 at 1.96 of them.
+    values, increases = profile(line, found, 1)
+    expected = ((values - found.values[1]) / found.errors[1]) ** 2
+    assert increases == pytest.approx(expected, abs=1.0e-4)
+    assert pytest.approx(1.95996**2, rel=1.0e-4) == CHI_SQUARE_95
+    # A model that misses the readings has errors with the factor √(χ²/(m − n)).
+    (_, found), (_, plain) = fitted(np.sign(np.sin(99.0 * X))), fitted(0.0 * X)
+    assert found.misfit > 5.0
+    assert found.errors == pytest.approx(found.misfit * plain.errors)
+
+
+def test_the_best_of_several_starts() -> None:
+    """Reference: analytic. (x² − 4)² + 0.1 (x − 3)² has a second minimum near −2."""
+
+    def residuals(p: Array) -> Array:
+        return np.array([p[0] ** 2 - 4.0, np.sqrt(0.1) * (p[0] - 3.0)])
+
+    assert fit(residuals, [-5.0], [5.0], [-2.0]).values[0] < 0.0
+    best = fit(residuals, [-5.0], [5.0], [-2.0], 4)
+    assert best.values[0] == pytest.approx(2.0, abs=0.02)
+    assert best.agreeing < 4
+
+
+def test_a_prediction_follows_the_covariance() -> None:
+    """Reference: analytic. A weight that is known within 5 kg scatters the tip in proportion."""
+    case = measured(CANTILEVER, channel("tip", value=-0.01, uncertainty=5.0e-4))
+    found = identify(case, {"payload.mass": (10.0, 900.0)})
+    experiment = Experiment(found.case, "case")
+    (deflection, predicted) = (
+        float(experiment.evaluate({"payload.mass": mass})[0][1][0, 0])
+        for mass in (100.0, found.case.payload.mass)
+    )
+    stiffness = 100.0 / -deflection
+    assert found.frame.loc["payload.mass", "value"] == pytest.approx(0.01 * stiffness, rel=1e-4)
+    assert found.frame.loc["payload.mass", "error"] == pytest.approx(5e-4 * stiffness, rel=1e-4)
+    assert predicted == pytest.approx(-0.01, rel=1e-4)
+    case_in_mm = found.case.model_copy(update={"shown_units": "mm-t-s"})
+    in_mm = identify(case_in_mm, {"payload.mass": (0.01, 0.9)}).frame
+    assert in_mm.loc["payload.mass", "value"] == pytest.approx(0.01e-3 * stiffness, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("unknown", "what"),
+    [
+        ({"payload.mass": (2.0, 1.0)},
+         "--unknown payload.mass: must have a lower bound below the upper one, got 2 and 1"),
+        ({"payload.weight": (1.0, 2.0)},
+         "payload.weight: is not a number of the case; give 'payload.mass'"),
+        ({"payload.gravity": (1.0, 2.0)},
+         "payload.gravity: is not a number of the case; give it a value, from which the search "
+         "starts"),
+        ({"measured[2].time_offset": (0.0, 1.0)},
+         "measured[2].time_offset: the case has no measured[2], its last one is measured[1]"),
+        ({"damping.modal": (0.0, 2.0)},
+         "--unknown damping.modal: 2 is not valid: must be a number less than 1, got 2"),
+    ],
+)  # fmt: skip
+def test_senseless_unknowns_are_refused(unknown: dict[str, tuple[float, float]], what: str) -> None:
+    with refused(f"case: {what}"):
+        identify(measured(CANTILEVER, channel("tip", value=-0.01)), unknown)
+
+
+def test_a_senseless_option_is_refused() -> None:
+    assert parse("joint.play = 0:0.03", "case.toml") == ("joint.play", (0.0, 0.03))
+    what = "not understood; give KEY=LOW:HIGH, such as joint.play=0:0.03"
+    with refused(f"case.toml: --unknown joint.play=0.03: {what}"):
+        parse("joint.play=0.03", "case.toml")
+
+
+@pytest.mark.slow
+def test_accelerations_after_a_release_have_one_minimum() -> None:
+    """Reference: by construction. Play in mm within 0.3 %, from 3 mm and bounds of 0 to 15 mm.
+
+    Impacts make χ² rough: searches from the start and from a few random points end up to 2 mm from
+    the true play, at misfits above 10.
+    """
+    play = 2.4
+    times = np.arange(0.0, 0.2, 0.002)
+    load = {"segment": "fly", "x": "head", "magnitude": -4000.0, "released": True}
+    boom = BOOM | {
+        "time": {"duration": 0.2, "output_step": 0.002, "step": 1.0e-4}, "load": [load],
+        "damping": {"modal": 0.02}, "gravity": {"angle": 10.0}, "payload": {"mass": 20.0},
+        "joint": [BOOM["joint"][0] | {"play": 0.003}],
+        "model": [{"name": "series", "kind": "kantorovich", "terms": [4, 4], "base": "complete"}],
+    }  # fmt: skip
+    head = channel("head", quantity="acceleration", segment="fly", x=8.0)
+
+    def case_of(curve: Array, uncertainty: float = 1.0) -> Case:
+        return measured(boom, head | {"table": pairs(curve, times), "uncertainty": uncertainty})
+
+    experiment = Experiment(case_of(0.0 * times), "case")
+    ((_, (curve, *_)),) = experiment.evaluate({"joint.play": 1.0e-3 * play})
+    noise = 0.01 * float(np.ptp(curve))
+    noisy = curve + np.random.default_rng(1).normal(0.0, noise, curve.size)
+    found = identify(case_of(noisy, noise), {"joint.play": (0.0, 0.015)}).found
+    assert found.values[0] == pytest.approx(1.0e-3 * play, rel=3.0e-3)
+    assert found.misfit < 2.0
+
+
+@pytest.mark.slow
+def test_chaotic_motions_are_compared_by_their_features() -> None:
+    """Reference: by construction. The paper's boom hits its play; 16.8 mm within two errors."""
+    tables = tomllib.loads((CASES / "paper.toml").read_text("utf-8"))
+    tables["time"] = {"duration": 8.0, "output_step": 0.01}
+    times = np.arange(0.0, 8.0, 0.02)
+
+    def case_of(curve: Array) -> Case:
+        return measured(tables, channel("tip", uncertainty=2.0e-3, table=pairs(curve, times)))
+
+    experiment = Experiment(case_of(np.zeros(times.size)), "case", "kantorovich-5")
+    ((_, (curve, *_)),) = experiment.evaluate({"joint.play": 0.0168})
+    noisy = curve + np.random.default_rng(0).normal(0.0, 2.0e-3, curve.size)
+    found = identify(case_of(noisy), {"joint.play": (0.004, 0.03)}, "kantorovich-5", starts=1)
+    assert found.residuals.horizons[0] < 6.0
+    assert found.found.residuals.size == STEADY
+    play = found.frame.loc["joint.play"]
+    assert abs(play["value"] - 0.0168) < 2.0 * play["error"] < 4.0e-4
+    # Without features the fit would follow the motion beyond its predictable time.
+    assert "unpredictable" in found.after.table().notes[1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Modes, time steps, damping and friction of the motions of a case, and fatigue."""
+"""Modes, time steps, damping, friction and ensembles of the motions of a case, and fatigue."""
 
 from collections import Counter
 from collections.abc import Mapping
@@ -10,8 +10,10 @@ from unittest.mock import Mock
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from protractile.analysis.fatigue import count_stress_ranges
+from protractile.analysis.low_pass import SlowPeaks, slow_peaks
 from protractile.analysis.model import AnalysisModel
 from protractile.analysis.modes import Mode, match_modes, modes
 from protractile.analysis.rows import MOTION, REST, Row, Rows
@@ -23,14 +25,21 @@ from protractile.beam_model.segment_model import gap_system
 from protractile.cases import change, run_case
 from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.integrator import AdaptiveStep, FixedStep
+from protractile.dynamics.motion import Motion
 from protractile.geometry.boom import Boom, Material, Segment, Support
 from protractile.geometry.box import BoxSection
+from protractile.runs.case.build import build_boom
 from protractile.runs.case.reading import select
-from protractile.runs.case.schema import DampingTable
+from protractile.runs.case.schema import Case, DampingTable, EnsembleTable
+from protractile.runs.pipeline.members import PEAKS, slow_cutoff, steps_for_peaks
 from protractile.runs.pipeline.model_run import RunContext
+from protractile.runs.pipeline.models import build
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.run import Run
 from protractile.runs.pipeline.run import run_case as run_models
+from protractile.runs.report.additions import Addition
+from protractile.runs.report.figures import figures_of
+from protractile.runs.report.output import write
 from tests.runs.case_texts import (
     CLAMPED,
     COARSE,
@@ -42,7 +51,7 @@ from tests.runs.case_texts import (
     shipped,
     table,
 )
-from tests.runs.summaries import motion_of
+from tests.runs.summaries import finished, motion_of
 from tests.runs.test_actions import CANTILEVER
 
 
@@ -65,7 +74,7 @@ def test_all_motions_of_a_model_take_the_step_of_the_case(
 ) -> None:
     """Reference: the case. Motions include those without play."""
     found = short(*run, **{"time.step": 4.0e-5})
-    move = Mock(side_effect=FixedStep.__call__, autospec=True)
+    move = Mock(side_effect=FixedStep.__call__)
     monkeypatch.setattr(FixedStep, "__call__", lambda *given: move(*given))
     found.evaluate()
     assert [call.args[0].step for call in move.call_args_list] == motions * [4.0e-5]
@@ -237,3 +246,108 @@ load = [{{ segment = "a", x = "head", magnitude = -3852.45, ramp = 0.001 }}]
     results = run_case(read_case(tmp_path, text))
     (found,) = results.rows.where(quantity="damage")
     assert found.value == pytest.approx(0.0570, rel=0.005)
+
+
+SERIES = ["kantorovich-4", "kantorovich-5"]
+MODELS = [*SERIES, "beam-fe-bonded"]
+STEP = 1.0e-3
+
+
+@pytest.fixture(scope="module")
+def case() -> Case:
+    coarse = select(shipped("coarse"), "", MODELS, None)
+    table = EnsembleTable(members=5, relative=1e-6, seed=3, vary="load")
+    return change(coarse.model_copy(update={"ensemble": table}), **{"time.duration": 3.0})
+
+
+@pytest.fixture(scope="module")
+def run(case: Case) -> Run:
+    return finished(case)
+
+
+@pytest.mark.usefixtures("unprinted")
+def test_member_0_is_the_trajectory(run: Run, tmp_path: Path) -> None:
+    """Reference: the run of the model, in single precision, with its names and units."""
+    write(run, Addition(), tmp_path)
+    results = Results.load(tmp_path)
+    ensembles = run.results.ensembles
+    xr.testing.assert_identical(results.ensembles.load(), ensembles)
+    assert ensembles.attrs["case_hash"] == results.summary.case_hash
+    assert results.case.ensemble == run.results.case.ensemble
+    assert ensembles["model"].values.tolist() == SERIES
+    for place in ("tip", "head"):
+        own = run.results.trajectories[place].sel(model=SERIES)
+        assert ensembles[place].attrs == own.attrs
+        found = ensembles[place].sel(member=0)
+        np.testing.assert_array_equal(found, own.astype(np.float32), strict=True)
+
+
+def test_slow_is_below_the_closed_boom(case: Case) -> None:
+    """Reference: other code, the lowest frequency of the bonded beam, 2.0852 Hz."""
+    boom = build_boom(case)
+    assert slow_cutoff(boom, case.time) == pytest.approx(0.8 * 2.0852, rel=1e-3)
+    for update in ({"duration": 0.5}, {"output_step": 0.5}):
+        assert slow_cutoff(boom, case.time.model_copy(update=update)) is None
+
+
+def test_summary_has_horizons_and_slow_peaks(run: Run) -> None:
+    """Reference: non-regression. After the first contact, members diverge within a second."""
+    models = run.results.summary.models
+    assert models["beam-fe-bonded"].ensemble is None
+    four, five = (models[name].ensemble for name in SERIES)
+    for ensemble in (four, five):
+        assert 0.5 < (ensemble.horizon(0.01) or 0.0) < 1.5
+        peaks = ensemble.slow_peaks
+        assert 0.5 < peaks.time[0] < 0.6
+        assert 0.14 < peaks.height[0] < 0.17
+        assert peaks.height_spread[0] < peaks.height_spread[1] < 0.05
+        assert 0.9 < (peaks.period or 0.0) < 1.2
+    found = run.results.summary.comparisons
+    assert (found.reference, [*found.ensembles]) == ("kantorovich-5", ["kantorovich-4"])
+    level = found.ensembles["kantorovich-4"]
+    until = min(ensemble.horizons["0.01"] for ensemble in (four, five))
+    assert level.pointwise.until == pytest.approx(until, abs=2e-3)
+
+
+def test_figures_have_bands_and_horizons(run: Run) -> None:
+    """Reference: the ensembles themselves, 5 to 95 % of the members at each time, in mm."""
+    figures = {figure.name: figure for figure in figures_of(run.results)}
+    models = run.results.summary.models
+    horizons = {t for name in SERIES for t in models[name].ensemble.horizons.values()}
+    for place in ("tip", "head"):
+        assert "5 to 95 % of the 5 members" in figures[place].caption
+        chart = figures[place].chart
+        bands = {curve.name: curve.band for curve in chart.curves if curve.band is not None}
+        assert list(bands) == SERIES
+        for name, band in bands.items():
+            members = 1000.0 * run.results.ensembles[place].sel(model=name).values
+            np.testing.assert_allclose(band, np.percentile(members, (5.0, 95.0), axis=0))
+        assert {vertical.at for vertical in chart.verticals} == horizons - {None} != set()
+
+
+def test_fewest_sufficient_steps_are_counted() -> None:
+    """Reference: by hand. From the second one on, slow peaks scatter by several percent."""
+    case = shipped("paper")
+    boom = build_boom(case)
+    (model,) = (model for model in case.models if model.name == "kantorovich-5")
+    cutoff, system = slow_cutoff(boom, case.time), build(case, boom, model).system
+    motion = Motion(system, 4.0, STEP)
+    made = AdaptiveStep()(motion)
+    times, heights = slow_peaks(np.asarray(made.data["tip"].values), made.time, cutoff)
+    spread = np.full(times.size, 0.03)
+    peaks = SlowPeaks(times, spread, heights, spread * heights, float(np.diff(times).mean()), 0.0)
+    # Beside a dashpot of no strength every step is made on its own.
+    single = replace(system, dashpots=np.zeros((1, system.num_modes)))
+    found = steps_for_peaks(Motion(single, 4.0, STEP), peaks, cutoff)
+    sizes = [trial.step for trial in found.trials]
+    assert sizes == pytest.approx([STEP * 2.0**i for i in range(-4, len(sizes) - 4)])
+    assert sizes[-1] < 0.25 / cutoff <= 2.0 * sizes[-1]
+    steps = [trial.steps for trial in found.trials]
+    assert steps == [pytest.approx(found.duration / size, abs=16.0) for size in sizes]
+    assert max(trial.energy_residual for trial in found.trials) < 1e-9
+    # Which of the long steps hold is chance, another one on another machine.
+    assert found.fewest == min(trial.steps for trial in found.trials if trial.holds)
+    higher = replace(peaks, height=1.05 * heights, height_spread=0.0 * heights)
+    assert steps_for_peaks(motion, higher, cutoff).fewest is None
+    too_few = SlowPeaks(*np.ones((4, PEAKS - 1)), period=1.0, period_spread=0.0)
+    assert steps_for_peaks(motion, too_few, cutoff) is None

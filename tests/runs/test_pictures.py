@@ -16,7 +16,6 @@ from matplotlib import rc_context
 from PIL import Image
 
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Cylinder
 from protractile.runs.case import reading as case_file
 from protractile.runs.case.load_tables import LoadTable, PayloadTable
 from protractile.runs.pipeline.results import Results
@@ -175,13 +174,11 @@ def test_arrows_and_their_numbers_stay_above_the_axis() -> None:
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("opengl")
-def test_symbols_of_loads_masses_and_cylinders_follow_the_boom(shell: Scene) -> None:
-    """Reference: analytic. A red arrow of 3 % of the boom, a black ball at the tip, a cylinder."""
+def test_symbols_of_loads_and_masses_follow_the_boom(shell: Scene) -> None:
+    """Reference: analytic. A red arrow of 3 % of the boom and a black ball at the tip."""
     down = LoadTable(segment="inner", x="head", magnitude=-1.0e3)
     update = {"payload": PayloadTable(mass=100.0), "loads": (down,)}
     marked = moving_scene(CASE.model_copy(update=update))
-    jack = Cylinder(0, x=2.0, depth=0.25, ground=(0.5, -2.25), stiffness=1.0e7)
-    marked = replace(marked, boom=replace(marked.boom, cylinders=(jack,)))
     instant, drawn = Instant(0.5), []
     for each in (shell, marked):
         with rc_context(theme.PAGE_RC):
@@ -191,19 +188,13 @@ def test_symbols_of_loads_masses_and_cylinders_follow_the_boom(shell: Scene) -> 
         drawn.append(np.asarray(picture, dtype=float)[574:124:-1])
     differs = np.abs(drawn[1] - drawn[0]).max(axis=2) > 60.0
     at_tip = np.abs(marked.points[:, 0] - marked.boom.tip) < 1e-6
-    seen = view.camera.project(view.places(marked.displacement(0.5), 0.5)[at_tip])
-    x, middle = seen[:, 0].mean(), seen[:, 1].mean()
+    x, middle = view.camera.project(view.places(marked.displacement(0.5), 0.5)[at_tip]).mean(axis=0)
     rows, columns = np.nonzero(differs & red(drawn[1]))
     assert columns.mean() == pytest.approx(x, abs=25.0)
     assert np.ptp(rows) == pytest.approx(0.03 * each.boom.length * 1600 / view.camera.width, abs=12)
     assert rows.mean() > middle
-    rows, columns = np.nonzero(differs & (drawn[1].max(axis=2) < 60.0))
-    ball = columns > 1000
-    assert columns[ball].mean() == pytest.approx(x, abs=25.0)
-    # Letters of the explanation reach down into the picture, above the boom.
-    bar = ~ball & (rows < middle)
-    slope = np.polyfit(columns[bar], rows[bar], 1)[0]
-    assert slope == pytest.approx(2.0 / 1.5, rel=0.2)
+    _, columns = np.nonzero(differs & (drawn[1].max(axis=2) < 60.0))
+    assert columns[columns > 1000].mean() == pytest.approx(x, abs=25.0)
 
 
 @pytest.mark.slow

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Static states of shipped booms, and cautions for values out of usual ranges."""
+"""Static states of shipped booms, and cautions: values out of usual ranges, walls that bend."""
 
 import re
 from math import cos, radians
@@ -8,20 +8,41 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from protractile.analysis.model import AnalysisModel
+from protractile.analysis.plate_buckling import (
+    measure_plates,
+    weakest_plates,
+)
+from protractile.analysis.rows import INITIAL, REST, Rows, extremes, static_rows
+from protractile.analysis.states import States
 from protractile.beam_model.statics import static_state
+from protractile.dynamics.line import Line
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Joint, Segment
+from protractile.geometry.box import BoxSection
 from protractile.runs import CASES
+from protractile.runs.case import reading
 from protractile.runs.case.build import build_boom
+from protractile.runs.case.reading import CheckedCase
 from protractile.runs.cautions import rules
-from protractile.runs.cautions.context import Context
+from protractile.runs.cautions.context import Context, State
+from protractile.runs.cautions.response import bulges
+from protractile.runs.check import check_case
+from protractile.runs.pipeline.beam_states import static_states
+from protractile.runs.pipeline.statics import boom_with_play
+from protractile.runs.process.bad_input import BadInput
+from tests.booms import CLAMP
+from tests.booms import STEEL as METAL
+from tests.modal import modal_system
 from tests.runs.case_texts import (
+    CLAMPED,
     HINGED,
     STEEL,
     box,
     edited,
     elements,
     load_checked_text,
+    read_case,
     refusal,
     shipped,
     table,
@@ -161,20 +182,27 @@ resistance = {{ material = 1.1 }}
 """
 # Half the weight in N of the plates.
 LOW = 9.80665 * 7850.0 * (6.5 * (0.22 * 0.006 + 0.3 * 0.005) + 6.0 * (0.18 * 0.005 + 0.256 * 0.004))
-HOIST = re.sub(r"(?ms)^\[rope\].*?(?=^\[)", "", (CASES / "hoist.toml").read_text("utf-8"))
 
 
-def cautions(folder: Path, text: str) -> list[str]:
-    checked = load_checked_text(folder, text)
-    return [
-        line.removeprefix("caution: ")
-        for line in rules.cautions(Context(checked.case, checked.boom), rules.OF_INPUTS)
-    ]
+def told(folder: Path, text: str) -> list[str]:
+    """Return the message of a refused case, or the cautions of another one."""
+    try:
+        checked = load_checked_text(folder, text)
+    except BadInput as refused:
+        return [str(refused).removeprefix(f"{folder / 'case.toml'}: ")]
+    return rules.cautions(Context(checked.case, checked.boom), rules.OF_INPUTS)
+
+
+HOISTED = (CASES / "hoist.toml").read_text("utf-8").replace("ramp = 0.2", "ramp = 0.0")
 
 
 @pytest.mark.parametrize(
     ("old", "new", "line"),
     [
+        *((old, f"{old.split()[0]} = {new}", f"hoist.{old.split()[0]}: the ") for old, new in (
+            ("travel = 1.2", "1e6"), ("speed = 0.2", "1e6"), ("modulus = 1.0e11", "1e-6"),
+            ("length = 35.0", "1e6"),
+        )),
         ("material = 1.1", "material = 1e-9", "combination[1].resistance.material: the "),
         ("partial_factor = 1.15", "partial_factor = 1e-9", "life.partial_factor: the partial "),
         ("diameter = 0.04", "diameter = 40.0",
@@ -196,68 +224,117 @@ def cautions(folder: Path, text: str) -> list[str]:
          "joint[1].play: 'fly' does not fit in 'base': 0.033 m of height and 0.031 m of width are "
          "free, and a play of 4 m is asked for; make the inner section or the play smaller; if it "
          "is in mm, give 0.004 m"),
-    ],
-)  # fmt: skip
-def test_senseless_values_are_refused(tmp_path: Path, old: str, new: str, line: str) -> None:
-    """Reference: exact words; the weight of the boom by its plates."""
-    assert refusal(tmp_path, edited(LIFT, (old, new))).startswith(line)
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "start"),
-    [
-        ("capacity = 200000.0", "capacity = 2000.0", "cylinder[1].capacity: the capacity of the "),
-        ("stiffness = 30000000.0", "stiffness = 30000.0", "cylinder[1].stiffness: the stiffness "),
-        ('name = "a"', 'name = "a"\npayload = 1e6', "load_case[1].payload: the payload is 1e+06 "),
+        ("capacity = 200000.0", "capacity = 2000.0", "caution: cylinder[1].capacity: the capacity"),
+        ("stiffness = 30000000.0", "stiffness = 30000.0", "caution: cylinder[1].stiffness: the"),
+        ('name = "a"', 'name = "a"\npayload = 1e6', "caution: load_case[1].payload: the payload"),
         ("dead = [1.2, 1.0], payload = 1.3, wind = 1.1", "dead = 0.0, payload = 0.0, wind = 0.0",
-         "combination[1].factors: all are 0, so that no load acts"),
+         "caution: combination[1].factors: all are 0, so that no load acts"),
         ("magnitude = -30.0", "magnitude = -110000.0",
-         "load_case[1].load[1].magnitude: -110000 N/m is "),
+         "caution: load_case[1].load[1].magnitude: -110000 N/m is "),
         ("[[joint]]", PUSH + "[[joint]]",
-         "base[1]: its table ends at 1 s with 100 % of its peak, which acts until the run ends; "),
+         "caution: base[1]: its table ends at 1 s with 100 % of its peak, which acts until the "),
         ("density = 7850.0", "density = 7850.0\nyield_by_thickness = [[0.005, 3.55e8]]",
-         "segment[1].section: a plate of 6 mm is thicker than the last pair of "
+         "caution: segment[1].section: a plate of 6 mm is thicker than the last pair of "
          "yield_by_thickness, 5 mm, and takes its strength; add a pair"),
         ("flange = 0.006, web = 0.005", "flange = 0.005, web = 0.006",
-         "segment[1].section: the flanges of 0.005 m are thinner than the webs of 0.006 m; "),
+         "caution: segment[1].section: the flanges of 0.005 m are thinner than the webs of 0.006"),
         ("gravity = { angle = 45.0 }", "gravity = { acceleration = 9.81 }",
-         "gravity.angle: missing, so that the boom on its cylinder is horizontal; "),
+         "caution: gravity.angle: missing, so that the boom on its cylinder is horizontal; "),
     ],
 )  # fmt: skip
-def test_unusual_values_are_cautioned(tmp_path: Path, old: str, new: str, start: str) -> None:
-    """Reference: exact words of the key; the correct lift has none."""
-    assert cautions(tmp_path, LIFT) == []
-    (found,) = cautions(tmp_path, edited(LIFT, (old, new)))
-    assert found.startswith(start)
-
-
-@pytest.mark.parametrize(
-    ("key", "value"),
-    [("travel", "1e6"), ("speed", "1e6"), ("modulus", "1e-6"), ("length", "1e6")],
-)
-def test_hoists_without_sense_are_refused(tmp_path: Path, key: str, value: str) -> None:
-    given = HOIST.replace("ramp = 0.2", "ramp = 0.0")
-    hoist = given.index("[hoist]")
-    text = given[:hoist] + re.sub(rf"(?m)^{key} = .*", f"{key} = {value}", given[hoist:], count=1)
-    assert refusal(tmp_path, text).startswith(f"hoist.{key}: the ")
+def test_values_without_sense_are_told(tmp_path: Path, old: str, new: str, line: str) -> None:
+    """Reference: exact words; the weight of the boom by its plates."""
+    text = HOISTED if line.startswith("hoist") else LIFT
+    (found,) = told(tmp_path, edited(text, (old, new)))
+    assert found.startswith(line)
 
 
 def test_a_hoist_needs_its_rope_and_its_load_once(tmp_path: Path) -> None:
     """Reference: by hand, 5 t weigh 24517 N across the boom at 60 degrees."""
-    text = re.sub(r"(?ms)^\[payload\].*?mass = [0-9.]+", "[payload]\nmass = 5000.0", HOIST)
+    text = re.sub(r"(?ms)^\[rope\].*?(?=^\[)", "", HOISTED)
+    text = re.sub(r"(?ms)^\[payload\].*?mass = [0-9.]+", "[payload]\nmass = 5000.0", text)
     force = -5000.0 * 9.80665 * cos(radians(60.0))
     load = table("[[load]]", segment="fly", x="head", magnitude=force, ramp=0.1)
-    found = cautions(tmp_path, text + load)
+    found = told(tmp_path, text + load)
     assert {
         "payload.mass: the 5000 kg at the tip are also the load of [hoist]",
         "rope: missing",
         f"load[1].magnitude: if {force:g} N at the tip is the weight of the load of [hoist]",
-    } <= {line.partition(",")[0] for line in found}
+    } <= {line.removeprefix("caution: ").partition(",")[0] for line in found}
 
 
 def test_a_boom_that_buckles_names_the_likely_unit(tmp_path: Path) -> None:
-    """Reference: exact words; a stiffness in N/mm, and a payload of ten times the boom."""
+    """Reference: exact words; a stiffness in N/mm, and a payload of ten times the boom.
+
+    The correct lift has no caution.
+    """
+    assert told(tmp_path, LIFT) == []
     slips = ("mass = 150.0", "mass = 5000.0"), ("stiffness = 30000000.0", "stiffness = 30000.0")
     found = refusal(tmp_path, edited(LIFT, *slips))
     assert found.startswith("model[1]: the boom of 'beam' buckles under ")
     assert found.endswith("; if it is in N/mm, give 3e+07 N/m")
+
+
+BUCKLING = np.pi**2 * 2.1e11 / (12.0 * 0.91)
+TUBE = BoxSection(height=0.5, width=0.4, flange=0.006, web=0.008)
+OF_FLANGE, OF_WEB = BUCKLING * (0.006 / 0.4) ** 2, BUCKLING * (0.008 / 0.5) ** 2
+
+
+@pytest.mark.parametrize(
+    ("curves", "wall", "x", "factor"),
+    [
+        ({"moment": [0.0, 1e5]}, "bottom", 2.0,
+         4.0 * OF_FLANGE / (1e5 * 0.25 / TUBE.second_moment_of_area)),
+        ({"normal": [-0.5e6, -1e6]}, "bottom", 2.0, 4.0 * OF_FLANGE * TUBE.area / 1e6),
+        # A positive moment presses the fibres with y < 0, on the left.
+        ({"lateral_moment": [0.0, 1e5]}, "left", 2.0,
+         4.0 * OF_WEB / (1e5 * 0.2 / TUBE.lateral_second_moment_of_area)),
+        ({"torque": [1e5, 1e4]}, "bottom", 0.0,
+         5.34 * OF_FLANGE / (1e5 / (2.0 * 0.2 * 0.006))),
+    ],
+)  # fmt: skip
+def test_the_weakest_wall_of_a_segment(
+    curves: dict[str, list[float]], wall: str, x: float, factor: float
+) -> None:
+    """Reference: analytic. Moments and axial forces compress walls, torque shears them."""
+    segment = Segment.of_section("outer", 0.0, 2.0, METAL, TUBE, supports=(CLAMP,))
+    given = {key: [0.0, 0.0] for key in ("deflection", "moment", "normal")} | curves
+    # One coordinate of value 1 has these section forces.
+    line = Line(np.array([0.0, 2.0]), {k: np.array(v)[:, None] for k, v in given.items()}, True)
+    model = AnalysisModel(Boom((segment,), ()), modal_system([1.0], [0.0]), [line])
+    rest = States(model, np.zeros(1), np.ones((1, 1)))
+    (row,) = weakest_plates(Rows(extremes(measure_plates(rest), "beam", REST)))
+    assert (row.place, row.x, row.value) == (wall, x, pytest.approx(factor))
+
+
+def test_check_names_buckling_walls(tmp_path: Path) -> None:
+    """Reference: analytic, the bottom flange of a cantilever under a load at its tip."""
+    section = BoxSection(height=0.4, width=0.3, flange=0.003, web=0.008)
+    unit = BUCKLING * (0.003 / 0.3) ** 2
+    stress = 2.0e5 * 6.0 * 0.2 / section.second_moment_of_area
+    text = f"""
+title = "Thin"
+time = {{ duration = 1.0 }}
+model = [{{ name = "beam", kind = "finite-element" }}]
+load = [{{ segment = "arm", x = "head", magnitude = -2e5 }}]
+{STEEL}{box("arm", 6.0, (0.4, 0.3, 0.003, 0.008), CLAMPED)}
+"""
+    found = check_case(CheckedCase(read_case(tmp_path, text)))
+    (table,) = (one for one in found.tables if one.title == "Buckling of walls, estimate")
+    assert table.rows == [("arm", "bottom", "0", f"{4.0 * unit / stress:.3g}")]
+    (caution,) = (line for line in found.lines if "panel formulas" in line)
+    assert caution.startswith("caution: the wall 'bottom' of 'arm' buckles at")
+
+
+def test_check_names_plays_closed_by_walls() -> None:
+    """Reference: other code, the static shell of the arm with edges of 0.2 m."""
+    checked = reading.load_checked(str(CASES / "inspection-arm.toml"))
+    boom = boom_with_play(checked.case, checked.boom)
+    rows = Rows(static_rows(static_states(checked.case, boom), "beam"))
+    closed = rows.where(state=INITIAL, quantity="closed_play")
+    assert [row.value for row in closed] == pytest.approx(
+        [1.1985e-3, 1.8414e-3, 0.8242e-3, 1.3873e-3], rel=0.02
+    )
+    state = State("in the beam estimate", closed=closed)
+    (caution,) = bulges(Context(checked.case, boom, [state]))
+    assert "1.2 of 4 mm at x = 3.5 m, 1.8 of 4 mm at x = 4.5 m" in caution

@@ -73,13 +73,13 @@ def trajectories(folder: Path) -> xr.Dataset:
 
 
 class Page(HTMLParser):
-    """Parser of tags, all of which must be closed, and of the text outside the style sheet."""
+    """Parser of tags, all of which must be closed, and of the text."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
         self.tags: list[tuple[str, dict[str, str | None]]] = []
         self.open: list[str] = []
-        self.text = self.style = ""
+        self.text = ""
         self.feed(text)
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
@@ -91,8 +91,6 @@ class Page(HTMLParser):
         assert self.open.pop() == tag
 
     def handle_data(self, data: str) -> None:
-        if self.tags and self.tags[-1][0] == "style":
-            self.style += data
         self.text += data
 
     def all(self, tag: str) -> list[dict[str, str | None]]:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Equal results on two ranks, and messages that are printed once."""
 
+import re
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -11,13 +12,11 @@ import xarray as xr
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 
-from protractile.runs.report import figures
-from tests import at_once
 from tests.system.run_folder import (
-    COARSE,
     ROOT,
     protractile,
     summary_of,
+    write_coarse,
 )
 from tests.unprinted import ONE_BLANK_FIGURE
 
@@ -26,18 +25,16 @@ pytestmark = pytest.mark.slow
 
 Ranks = Callable[..., subprocess.CompletedProcess[str]]
 
-# A command, with pictures and most figures left out for the sake of time.
-COMMAND = f"""
+# Commands one after another, with one figure for the sake of time.
+COMMANDS = f"""
 {ONE_BLANK_FIGURE}
 import sys
 from protractile.runs import cli
-from protractile.runs.process import workers
-from protractile.runs.report import snapshots
-from tests import at_once
-
-workers.workers = at_once.workers
-snapshots.render_files = lambda *_: []
-cli.main()
+for command in sys.argv[1:]:
+    try:
+        cli.main(command.replace("runs/", "{ROOT}/runs/").split())
+    except SystemExit as ended:
+        print(f"status {{ended.code}}")
 """
 
 # One rank fails while the other waits for it, and does not wait long for the other to speak.
@@ -61,30 +58,24 @@ def complaints(answer: subprocess.CompletedProcess[str]) -> list[str]:
     return [line for line in answer.stderr.splitlines() if line.startswith("protractile: ")]
 
 
-def test_two_ranks_run_shells_and_beams_as_one_does(
-    two_ranks: Ranks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.mark.usefixtures("few_figures")
+def test_two_ranks_run_shells_and_beams_as_one_does(two_ranks: Ranks, here: Path) -> None:
     """Reference: one rank, to the last bit, while the boom slews."""
-    monkeypatch.setattr("protractile.runs.process.workers.workers", at_once.workers)
-    monkeypatch.setattr("protractile.runs.report.snapshots.render_files", lambda *arguments: [])
-    monkeypatch.setattr(figures, "FIGURES", figures.FIGURES[-1:])
-    text = Path(COARSE).read_text(encoding="utf-8").replace("duration = 0.6", "duration = 0.02")
+    text = write_coarse(here, 0.02).read_text(encoding="utf-8")
     text = text.replace("play = 0.014", "play = 0.014\nlateral_play = 0.01")
     text += "\n[gravity]\nangle = 30.0\n\n[slew]\ntravel = 1.0\nspeed = 10.0\nramp = 0.05\n"
-    (tmp_path / "slew.toml").write_text(text, encoding="utf-8")
-    options = "--models", "beam-fe,shell", "--mesh-size", "1", "--no-cache"
-    run = "run", tmp_path / "slew.toml", *options
-    one, two = tmp_path / "one", tmp_path / "two"
-    assert protractile(*run, "--out", one) == 0
-    answer = two_ranks(COMMAND, *map(str, run), "--out", "two")
-    assert (answer.returncode, complaints(answer)) == (0, [])
-    assert answer.stdout.count("two/report.html") == 1
-    alone, shared = (summary_of(folder)["models"] for folder in (one, two))
-    for model in (*alone.values(), *shared.values()):
+    Path("slew.toml").write_text(text, encoding="utf-8")
+    run = "run slew.toml --models beam-fe,shell --mesh-size 1 --no-cache --no-pictures --out "
+    assert protractile(*f"{run}one".split()) == 0
+    answer = two_ranks(COMMANDS, f"{run}two")
+    assert complaints(answer) == []
+    assert answer.stdout.count("status 0\n") == answer.stdout.count("two/report.html") == 1
+    one, two = (summary_of(Path(folder))["models"] for folder in ("one", "two"))
+    for model in (*one.values(), *two.values()):
         del model["wall_time"], model["seconds"]
-    assert alone == shared
+    assert one == two
     for file in ("trajectories.nc", "fields.nc", "stress.nc"):
-        alone, shared = (xr.load_dataset(run / file, engine="scipy") for run in (one, two))
+        alone, shared = (xr.load_dataset(f"{run}/{file}", engine="scipy") for run in ("one", "two"))
         xr.testing.assert_equal(alone, shared)
 
 
@@ -96,23 +87,14 @@ PRINTING = (
     ("export runs/cases/coarse.toml --to opensees --model beam-fe --out x.py", "x.py", 0),
     ("run nowhere.toml", "", 2),
 )
-STATUSES = f"""
-import sys
-from protractile.runs import cli
-for command in sys.argv[1:]:
-    try:
-        cli.main(command.replace("runs/", "{ROOT}/runs/").split())
-    except SystemExit as ended:
-        print(f"status {{ended.code}}")
-"""
 
 
 def test_two_ranks_print_once(two_ranks: Ranks) -> None:
     """Reference: one rank, which prints each line once. The first rank has the exit status."""
-    answer = two_ranks(STATUSES, *(command for command, _, _ in PRINTING))
+    answer = two_ranks(COMMANDS, *(command for command, _, _ in PRINTING))
     assert answer.returncode == 0
-    lines = [line for line in answer.stdout.splitlines() if line.startswith("status ")]
-    assert lines == [f"status {status}" for _, _, status in PRINTING]
+    statuses = re.findall("^status (.*)$", answer.stdout, re.MULTILINE)
+    assert statuses == [str(status) for _, _, status in PRINTING]
     for command, once, _ in PRINTING:
         assert not once or answer.stdout.count(once) == 1, command
     assert complaints(answer)[-1] == (

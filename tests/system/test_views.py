@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""All views of one boom show the same numbers: check, prove, run, live, frequencies, sweep, export.
+"""All views of one boom show the same numbers: check, prove, run, live and frequencies.
 
 Each case has one model of beam elements as fine as those of ``check``, and ends early, so that the
 views have the same loads. Two differences have their reason in the output: walls under pads bend
 in ``check`` and ``prove`` only, and proofs have the initial extension.
 """
 
-import ast
 import re
 import tomllib
 from collections.abc import Iterator
@@ -25,7 +24,6 @@ from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.finite_element import BeamElements
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.check import Check
-from protractile.runs.export import opensees
 from protractile.runs.live.beam import beam_results
 from protractile.runs.live.controls import Draft
 from protractile.runs.pipeline.combinations import combination_states
@@ -204,37 +202,6 @@ def of_live(case: pt.Case, boom: Boom) -> Iterator[View]:
                 yield View(quantity, "live", number(row[1]), THREE)
 
 
-def of_export(case: pt.Case, boom: Boom, checked: Check) -> Iterator[View]:
-    """Compare the loads of the last segment in the OpenSees script with its contact forces."""
-    model = case.models[0]
-    try:
-        script = opensees.script(case, model.model_boom(boom), model, None)
-    except pt.BoomError:
-        # The message names the key that OpenSees does not support.
-        return
-    (loads,) = re.findall(r"^LOADS = (.*)$", script, re.MULTILINE)
-    down = sum(
-        node[1] * (1.0 if load["values"] is None else load["values"][0])
-        for load in ast.literal_eval(loads)
-        if load["segment"] == len(boom.segments) - 1
-        for node in load["nodes"]
-    )
-    table = checked.frames["Reactions of supports and contacts at rest, t = 0"]
-    up = table[table["segment"] == boom.segments[-1].name].iloc[:, 2].astype(float).sum()
-    yield View("load of the last segment", "OpenSees", -1e-3 * down, NONE)
-    yield View("load of the last segment", "check", up, FOUR)
-
-
-def of_sweep(case: pt.Case) -> Iterator[View]:
-    gravity = case.gravity.acceleration
-    data = pt.sweep(case, {"gravity.acceleration": [gravity, 1.01 * gravity]})
-    for name, quantity, factor in (
-        ("tip_at_rest", "largest tip", -1e3),
-        ("first_frequency", "first frequency", 1.0),
-    ):
-        yield View(quantity, "sweep", factor * float(data[name].values.ravel()[0]), NONE)
-
-
 @pytest.mark.slow
 @pytest.mark.usefixtures("empty_cache")
 @pytest.mark.parametrize("name", [*NAMES, *OWN])
@@ -248,8 +215,6 @@ def test_views_show_the_same_numbers(name: str) -> None:
     hertz = first_frequencies(case, case.models[0], None, None)[0, 0]
     views = [
         *of_check(checked), *of_prove(case, boom), *of_run(case, boom), *of_live(case, boom),
-        # A sweep starts processes, which takes longer than all other views.
-        *(of_sweep(case) if name == "hanging" else ()), *of_export(case, boom, checked),
         View("first frequency", "frequencies", hertz, NONE), View("mass", "boom", boom.mass, NONE),
     ]  # fmt: skip
     stated = f"{boom.yielding.capitalize()} are rigid in 'beam'." in checked.lines
