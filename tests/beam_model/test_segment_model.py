@@ -64,7 +64,7 @@ def test_bonded_series_converges_to_the_bonded_elements(
 
 
 def test_a_boom_of_three_has_the_rows_of_each_joint(paper_boom: Boom) -> None:
-    """Reference: by construction. Bonded, both segments of a joint deflect alike at stations."""
+    """Reference: by construction. Bonded segments deflect alike at the stations of their joint."""
     (outer, middle), (joint,) = paper_boom.segments, paper_boom.joints
     last = replace(middle, name="last", start=17.5, end=27.0, section=None)
     second = replace(joint, outer=1, inner=2, stations=(17.5, 19.0))

@@ -25,7 +25,7 @@ from protractile.geometry.observation import Observation
 from protractile.runs.pipeline.model_output import write_field_series
 from protractile.shell_model.boom_shell import ShellOptions
 from protractile.shell_model.reduced_shell import reduce_boom
-from protractile.shell_model.stress.lines import lines
+from protractile.shell_model.stress.lines import band_boundaries, lines
 from studies import sections
 from studies.reference_models.statics import static_response
 from tests.shell_model.booms import (
@@ -237,6 +237,16 @@ def test_a_shell_in_space_bends_and_twists_as_beams_do() -> None:
                 continue
             off = np.abs(values - expected)[outside].max() / largest
             assert off < (0.02 if name in ("deflection", "lateral") else 0.01), name
+
+
+def test_band_boundaries_pass_no_triangle_and_are_at_loads() -> None:
+    """Reference: by hand. Near loads, lines that leave short bands are no boundaries."""
+    spans = np.array([[0.0, 2.0], [1.0, 3.0], [3.0, 4.0]])
+    assert band_boundaries(spans, []).tolist() == [0.0, 3.0, 4.0]
+    edges = np.linspace(0.0, 10.0, 1001)
+    cuts = band_boundaries(np.column_stack([edges[:-1], edges[1:]]), [2.01])
+    assert 2.01 in cuts.round(9)
+    assert np.diff(cuts).min() > 10.0 / 60.0 - 1e-9
 
 
 @pytest.fixture

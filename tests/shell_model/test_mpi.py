@@ -17,7 +17,7 @@ pytest.importorskip("dolfinx", reason="forms are compiled by FFCx")
 
 from mpi4py import MPI
 
-from protractile.geometry.boom import Boom, Direction, Pad
+from protractile.geometry.boom import Boom, Pad
 from protractile.shell_model.boom_shell import ShellOptions
 from protractile.shell_model.buckling import ShellState, buckle_segments
 from protractile.shell_model.reduced_shell import reduce_boom
@@ -54,23 +54,16 @@ def everything(comm: MPI.Comm) -> dict[str, Any]:
 
 
 def rubbing(comm: MPI.Comm) -> dict[str, Any]:
-    """Return all numbers that determine the motion of a coarse boom with friction and pads, and on
-    rank 0 the stresses of the outer segment under its static load.
-    """
+    """Return all that a coarse boom with friction and pads moves by, and on rank 0 its stresses."""
     law = replace(LAW.law, stiffness=1.0e8, exponent=1.0).with_clearance(LAW.above)
     options = ShellOptions(1.0, krylov=KrylovOptions(shifts=(5.0, 300.0), moments=1))
     boom = flat_boom(friction=0.2)
     boom = replace(boom, joints=(replace(boom.joints[0], pad=Pad(0.1, 0.06)),))
     shell = reduce_boom(touching(boom, law), options, comm)
     system = shell.system
-    parts = {
-        "omega2": system.omega2,
-        "rows": system.rows,
-        "load": system.load,
-        "friction_rows": system.friction_rows,
-        "damping": system.damping,
-        **{f"observer {name}": observer.row for name, observer in system.observers.items()},
-    }
+    names = "omega2", "rows", "load", "friction_rows", "damping"
+    parts = {name: getattr(system, name) for name in names}
+    parts |= {f"observer {name}": observer.row for name, observer in system.observers.items()}
     if shell.fields is not None:
         own = shell.fields["coordinates_1"].values
         state = own @ system.load / (own @ system.omega2)
@@ -92,9 +85,8 @@ def buckled(comm: MPI.Comm) -> list[float]:
 def accelerated(comm: MPI.Comm, shells: list[SegmentShell]) -> list[list[float]] | None:
     """Return the positions and inertia loads of the nodes of boxes, in order, on rank 0."""
     rows = []
-    directions: tuple[Direction, ...] = ("y", "z")
     for shell in shells:
-        loads = [f for d in directions for f in (shell.inertia(d, 1.0), shell.rotation_load(d))]
+        loads = [f for d in ("y", "z") for f in (shell.inertia(d, 1.0), shell.rotation_load(d))]
         first, _ = shell.owned
         for places, dofs in shell.plates.nodes:
             rows.append(np.hstack([places.round(9), *(load[dofs - first] for load in loads)]))
