@@ -17,6 +17,7 @@ from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Support
 from protractile.geometry.load import Load
+from protractile.geometry.observation import Observation
 from studies.reference_models.statics import static_response
 from tests.beam_model.exact import (
     STEEL,
@@ -60,6 +61,23 @@ def test_bonded_series_converges_to_the_bonded_elements(
     found = gap_system(paper_boom.bonded, beam_series(paper_boom, (12, 12), "complete"))
     np.testing.assert_allclose(found.frequencies[:4], beams.frequencies[:4], rtol=8e-4)
     assert rest(found) == pytest.approx(rest(beams), rel=7e-4, abs=0.0)
+
+
+def test_a_boom_of_three_has_the_rows_of_each_joint(paper_boom: Boom) -> None:
+    """Reference: by construction. Bonded, both segments of a joint deflect alike at stations."""
+    (outer, middle), (joint,) = paper_boom.segments, paper_boom.joints
+    last = replace(middle, name="last", start=17.5, end=27.0, section=None)
+    second = replace(joint, outer=1, inner=2, stations=(17.5, 19.0))
+    boom = Boom((outer, middle, last), (joint, second))
+    system = gap_system(touching(boom, [LAW, LATERAL_LAW]), beam_elements(boom, 0.5))
+    assert list(system.laws) == [LAW, LAW, LATERAL_LAW, LATERAL_LAW]
+    assert list(system.stations) == [9.0, 10.0, 17.5, 19.0]
+    seen = [(k, x) for one in boom.joints for x in one.stations for k in (one.outer, one.inner)]
+    bonded = replace(boom, observations=[Observation(f"{k} {x}", k, x) for k, x in seen]).bonded
+    deflections = rest(gap_system(bonded, beam_elements(boom, 0.5)))
+    found = [deflections[f"{k} {x}"] for k, x in seen]
+    assert found[1::2] == pytest.approx(found[::2], rel=1e-6)
+    assert found[::2] == sorted(found[::2])
 
 
 def test_bonded_halves_have_the_frequencies_of_the_whole(paper_boom: Boom) -> None:

@@ -23,6 +23,10 @@ FLAGS = (
     "--disable-background-networking", "--disable-component-update", "--disable-sync",
     "--remote-debugging-pipe",
 )  # fmt: skip
+COMPLAINTS = (
+    "Runtime.exceptionThrown", "Runtime.consoleAPICalled", "Log.entryAdded",
+    "Network.loadingFailed",
+)  # fmt: skip
 # Gives the pipes the numbers that the protocol asks for; they may have each other's.
 LAUNCH = """
 import fcntl, os, sys
@@ -55,24 +59,19 @@ class Page:
         for domain in ("Page", "Runtime", "Log", "Network"):
             self._ask(f"{domain}.enable")
 
-    def open(self, source: Path | str, width: int, height: int = 800) -> None:
+    def open(self, source: Path | str, width: int) -> None:
         """Load a file or an address at a width in CSS pixels, as a telephone does."""
-        self.set_width(width, height)
+        self.set_width(width)
         self._loaded = False
         url = source.resolve().as_uri() if isinstance(source, Path) else source
         self._ask("Page.navigate", url=url)
         while not self._loaded:
             self._receive()
 
-    def set_width(self, width: int, height: int = 800) -> None:
-        """Set the size of the window in CSS pixels."""
-        self._ask(
-            "Emulation.setDeviceMetricsOverride",
-            width=width,
-            height=height,
-            deviceScaleFactor=1,
-            mobile=True,
-        )
+    def set_width(self, width: int) -> None:
+        """Set the width of the window in CSS pixels."""
+        size = {"width": width, "height": 800, "deviceScaleFactor": 1, "mobile": True}
+        self._ask("Emulation.setDeviceMetricsOverride", **size)
 
     def evaluate(self, expression: str) -> Any:
         """Return the value of a JavaScript expression in the page."""
@@ -89,9 +88,9 @@ class Page:
 
     def point_at(self, x: float, y: float, press: bool = False) -> None:
         """Move the mouse to a place in CSS pixels, and click there if asked to."""
-        kinds = ("mouseMoved", *(("mousePressed", "mouseReleased") if press else ()))
-        for kind in kinds:
-            button = {"button": "left", "clickCount": 1} if kind != "mouseMoved" else {}
+        self._ask("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)
+        for kind in ("mousePressed", "mouseReleased") if press else ():
+            button = {"button": "left", "clickCount": 1}
             self._ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, **button)
 
     def show_as(self, media: str) -> None:
@@ -120,30 +119,15 @@ class Page:
             self._rest += part
         message, _, self._rest = self._rest.partition(b"\0")
         answer = json.loads(message)
-        self._note(answer.get("method", ""), answer.get("params", {}))
+        self._loaded |= answer.get("method") == "Page.loadEventFired"
+        if answer.get("method") in COMPLAINTS:
+            self.complaints.append(json.dumps(answer["params"]))
         return answer
-
-    def _note(self, method: str, what: dict[str, Any]) -> None:
-        if method == "Page.loadEventFired":
-            self._loaded = True
-        elif method == "Runtime.exceptionThrown":
-            self.complaints.append(what["exceptionDetails"]["text"])
-        elif method == "Runtime.consoleAPICalled":
-            self.complaints.append(str(what["args"]))
-        elif method == "Log.entryAdded":
-            self.complaints.append(what["entry"]["text"])
-        elif method == "Network.loadingFailed":
-            self.complaints.append(what["errorText"])
 
 
 @contextmanager
 def blank_page(browser: str, folder: Path) -> Iterator[Page]:
-    """Yield a browser with one page, which ends with the context.
-
-    Args:
-        browser: its path.
-        folder: for its profile.
-    """
+    """Yield one page of a browser, which ends with the context, and has its profile in a folder."""
     to_browser, requests = os.pipe()
     answers, from_browser = os.pipe()
     ends = (str(to_browser), str(from_browser))

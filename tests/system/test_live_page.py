@@ -16,6 +16,7 @@ from protractile.runs.case.schema import Case
 from protractile.runs.live.controls import Draft
 from protractile.runs.live.server import LivePage, make_server
 from tests.system.browser import Page, blank_page, find_browser
+from tests.system.run_folder import write_coarse
 
 pytestmark = pytest.mark.slow
 
@@ -43,12 +44,12 @@ BROKEN_WORDS = """
 
 
 @contextmanager
-def served_page(case: str, profile: Path) -> Iterator[tuple[Page, LivePage]]:
-    """Yield the live page of a shipped case, with its first results, and what serves it."""
+def served_page(case: Path, profile: Path) -> Iterator[tuple[Page, LivePage]]:
+    """Yield the live page of a case, with its first results, and what serves it."""
     browser = find_browser()
     if browser is None:
         pytest.skip("the live page is opened in chromium, and there is none on PATH")
-    live = LivePage(Draft.load(str(CASES / case)))
+    live = LivePage(Draft.load(str(case)))
     server, address = make_server(live)
     threading.Thread(target=server.serve_forever, daemon=True).start()
     with blank_page(browser, profile) as opened:
@@ -62,7 +63,7 @@ def served_page(case: str, profile: Path) -> Iterator[tuple[Page, LivePage]]:
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
-    with served_page("lift.toml", tmp_path_factory.mktemp("profile")) as (opened, _):
+    with served_page(CASES / "lift.toml", tmp_path_factory.mktemp("profile")) as (opened, _):
         yield opened
 
 
@@ -168,7 +169,9 @@ def test_a_shell_runs_beside_the_beam(tmp_path: Path) -> None:
     """After a cancelled run, the next one shows its results and report."""
     press = "document.getElementById('run').click()"
     progress = "document.getElementById('progress').textContent"
-    with served_page("coarse.toml", tmp_path) as (page, live):
+    case = write_coarse(tmp_path, 0.2)
+    case.write_text(case.read_text("utf-8").replace("mesh_size = 0.25", "mesh_size = 0.5"), "utf-8")
+    with served_page(case, tmp_path / "profile") as (page, live):
         page.evaluate(press)
         page.wait_for(f"{progress}.includes(' s)')")
         page.evaluate(press)

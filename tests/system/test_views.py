@@ -9,8 +9,9 @@ in ``check`` and ``prove`` only, and proofs have the initial extension.
 import ast
 import re
 import tomllib
-from collections import defaultdict
+from collections.abc import Iterator
 from dataclasses import replace
+from itertools import combinations
 from typing import Any, NamedTuple
 
 import pytest
@@ -32,7 +33,7 @@ from protractile.runs.pipeline.models import build, initial_motion
 from protractile.runs.pipeline.proofs import prove
 from protractile.runs.report.result_tables import peaks
 from protractile.runs.sweep.frequencies import first_frequencies
-from tests.runs.case_texts import REST, STEEL, elements, joint, table
+from tests.runs.case_texts import CLAMPED, HINGED, REST, STEEL, elements, joint, shipped, table
 
 # Relative error of numbers in texts of three and of four digits, and of computed numbers.
 THREE, FOUR, NONE = 5.0e-3, 5.0e-4, 1.5e-4
@@ -51,16 +52,14 @@ def own_boom(angle: float, more: str, play: str = "") -> pt.Case:
         walls = {"chamfer": chamfer, "top": 0.008, "bottom": 0.008, "web": 0.006}
         section = {"shape": "octagon", "height": height, "width": width, **walls}
         text += table("[[segment]]", name=name, span=span, section=section)
-        kind = "clamped" if play else "hinged"
-        text += f'supports = [{{ x = 0.0, kind = "{kind}" }}]\n' if name == "base" else ""
+        if name == "base":
+            text += CLAMPED if play else HINGED
     text += joint("fly", "base", 0.004, (6.5, 8.0), play) + more + elements("any")
     return pt.load_case(tomllib.loads(text))
 
 
-_CYLINDER = table(
-    "[[cylinder]]", segment="base", x=3.0, depth=0.3, ground=[1.0, -1.5], stiffness=5e7
-)
-_ROPE = {"mass": 2000.0, "stiffness": 2e6}
+_JACK = {"segment": "base", "x": 3.0, "depth": 0.3, "ground": [1.0, -1.5], "stiffness": 5e7}
+_CYLINDER, _ROPE = table("[[cylinder]]", **_JACK), {"mass": 2000.0, "stiffness": 2e6}
 OWN = {
     "hanging": (
         50.0,
@@ -68,7 +67,6 @@ OWN = {
         + table("[rope]", falls=4)
         + table("[limits]", tip_at_rest=0.2)
         + _CYLINDER,
-        "",
     ),
     "luffed": (
         50.0,
@@ -78,7 +76,6 @@ OWN = {
         + table("[[combination]]", name="A", factors={"dead": 1.1, "payload": 1.3})
         + table("[limits]", tip_at_rest=0.5)
         + _CYLINDER,
-        "",
     ),
     "space": (
         20.0,
@@ -89,12 +86,12 @@ OWN = {
     ),
 }
 NAMES = "coarse", "crane-proof", "friction-walk", "hoist", "inspection-arm", "lift", "slew"
-SHIPPED = {name: pt.CASES / f"{name}.toml" for name in NAMES}
 
 
 class View(NamedTuple):
     """A number that a view shows."""
 
+    quantity: str
     name: str
     value: float
     error: float  #: relative, of its text
@@ -103,21 +100,19 @@ class View(NamedTuple):
 
 def case_of(name: str) -> tuple[pt.Case, Boom]:
     """Return a case with one model of beam elements, and its boom."""
-    case = own_boom(*OWN[name]) if name in OWN else pt.load_case(SHIPPED[name])
+    case = own_boom(*OWN[name]) if name in OWN else shipped(name)
     boom = build_boom(case)
     contacts = [getattr(model, "contact", None) for model in case.models]
+    whole = all(segment.section is not None for segment in boom.segments)
     beam = BeamElements(
         name="beam",
-        theory="timoshenko"
-        if all(s.section is not None for s in boom.segments)
-        else "euler-bernoulli",
+        theory="timoshenko" if whole else "euler-bernoulli",
         element_length=max(segment.length for segment in boom.segments) / 20.0,
         contact=next(filter(None, contacts), None),
     )
     duration = LIFTED.get(name, 0.02)
-    time = {"duration": duration, "output_step": duration / 20.0}
-    changes: dict[str, Any] = {"models": (beam,), "ensemble": None, "buckling": None}
-    changes["time"] = case.time.model_copy(update=time)
+    time = case.time.model_copy(update={"duration": duration, "output_step": duration / 20.0})
+    changes: dict[str, Any] = {"models": (beam,), "ensemble": None, "buckling": None, "time": time}
     if "paper" in type(case).model_fields:
         changes["paper"] = None
     return case.model_copy(update=changes), boom
@@ -128,80 +123,76 @@ def number(text: object) -> float:
     return float(str(text).split()[0].replace("−", "-"))
 
 
-def of_check(checked: Check, shown: dict[str, list[View]]) -> None:
+def of_check(checked: Check) -> Iterator[View]:
     frames, lines = checked.frames, " ".join(checked.lines)
     static = next(frame for title, frame in frames.items() if title.startswith("Static results"))
     static = static.set_index(static.columns[0])
     largest = "maximum" if "maximum" in static else "t = 0"
-    for quantity, column in (("tip at t = 0", "t = 0"), ("largest tip", largest)):
-        shown[quantity].append(View("check", number(static.loc["tip", column]), THREE, True))
-    if "cylinder force" in static.index:
-        force = number(static.loc["cylinder force", largest])
-        shown["cylinder force"].append(View("check", force, THREE, True))
+    for quantity, row, column in (
+        ("tip at t = 0", "tip", "t = 0"),
+        ("largest tip", "tip", largest),
+        ("cylinder force", "cylinder force", largest),
+    ):
+        if row in static.index:
+            yield View(quantity, "check", number(static.loc[row, column]), THREE, True)
     for quantity, words, unit in (
         ("tip at t = 0", "Static tip deflection", "mm"),
         ("first frequency", "First natural frequency", "Hz"),
     ):
         (text,) = re.findall(rf"{words}[^:]*: (\S+) {unit};", lines)
-        shown[quantity].append(View("first screen", number(text), FOUR, True))
-    masses = frames["Masses"].iloc[-1, 1:3].astype(float).sum()
-    shown["mass"].append(View("check", masses, FOUR))
+        yield View(quantity, "first screen", number(text), FOUR, True)
+    yield View("mass", "check", frames["Masses"].iloc[-1, 1:3].astype(float).sum(), FOUR)
     for title, frame in frames.items():
         if title.startswith("Buckling under"):
-            shown["buckling factor"].append(View("check", frame.iloc[0, 1], NONE))
+            yield View("buckling factor", "check", frame.iloc[0, 1], NONE)
         if title.startswith("Damping"):
             ratio, hertz = re.findall(r"(\S+) % at (\S+) Hz", frame.iloc[0, 1])[0]
-            shown["damping ratio"].append(View("check", number(ratio), THREE))
-            shown["first frequency"].append(View("table of damping", number(hertz), THREE))
+            yield View("damping ratio", "check", number(ratio), THREE)
+            yield View("first frequency", "table of damping", number(hertz), THREE)
 
 
-def of_prove(case: pt.Case, boom: Boom, shown: dict[str, list[View]]) -> None:
+def of_prove(case: pt.Case, boom: Boom) -> Iterator[View]:
     plain = case.model_copy(update={"combinations": (), "load_cases": (), "spectra": ()})
     (state,) = combination_states(plain)
     (tip,) = state.rows.where(quantity="tip")
-    shown["largest tip"].append(View("prove", 1e3 * tip.value, NONE, True))
+    yield View("largest tip", "prove", 1e3 * tip.value, NONE, True)
     for kind in ("cylinder force", "foot reaction"):
-        row = state.rows.where(quantity=kind.replace(" ", "_")).largest
-        if row is not None:
-            shown[kind].append(View("prove", 1e-3 * row.value, NONE, True))
+        if row := state.rows.where(quantity=kind.replace(" ", "_")).largest:
+            yield View(kind, "prove", 1e-3 * row.value, NONE, True)
     table = state.combined.combination.model_copy(update={"proofs": ("column",)})
     state = replace(state, combined=state.combined._replace(combination=table))
     for proof in prove(plain, [state]).rows:
         if not boom.telescopes:
-            assert proof.limit is not None
-            factor = proof.limit / proof.value
-            shown["buckling factor"].append(View("prove", factor, NONE, True))
+            yield View("buckling factor", "prove", proof.limit / proof.value, NONE, True)
 
 
-def of_run(case: pt.Case, boom: Boom, shown: dict[str, list[View]]) -> None:
+def of_run(case: pt.Case, boom: Boom) -> Iterator[View]:
     results = pt.run_case(case)
     rows, motion = results.rows.where(model="beam", play=True), results.trajectories
     static = rows.where(state=[INITIAL, AT_REST])
     for state, what in ((INITIAL, "tip at t = 0"), (AT_REST, "largest tip")):
         (tip,) = static.where(state=state, quantity="tip")
-        shown[what].append(View("run", 1e3 * tip.value, NONE))
+        yield View(what, "run", 1e3 * tip.value, NONE)
     if case.start.at_rest:
-        shown["tip at t = 0"].append(View("motion", 1e3 * float(motion["tip"][0, 0]), NONE))
-    frequencies = static.where(quantity="frequency")
-    shown["first frequency"].append(View("run", frequencies[0].value, NONE))
+        yield View("tip at t = 0", "motion", 1e3 * float(motion["tip"][0, 0]), NONE)
+    yield View("first frequency", "run", static.where(quantity="frequency")[0].value, NONE)
     if force := static.where(quantity="cylinder_force").largest:
-        shown["cylinder force"].append(View("run", 1e-3 * force.value, NONE))
+        yield View("cylinder force", "run", 1e-3 * force.value, NONE)
     if not (boom.telescopes or boom.spatial or case.slew or case.luff):
         for peak in peaks(rows).where(quantity="foot_reaction"):
-            shown["foot reaction"].append(View("run", 1e-3 * rows.at_rest(peak), NONE))
+            yield View("foot reaction", "run", 1e-3 * rows.at_rest(peak), NONE)
     for check in results.check_limits():
         if check.limit.quantity.name == "tip_at_rest":
-            tip = -1e3 * check.values["beam"]
-            shown["largest tip"].append(View("limit", tip, NONE))
-    motion_plan = initial_motion(build(case, boom, case.models[0]).system, case)
+            yield View("largest tip", "limit", -1e3 * check.values["beam"], NONE)
     if case.damping.modal:
-        shown["damping ratio"].append(View("case", 100.0 * case.damping.modal, NONE))
+        yield View("damping ratio", "case", 100.0 * case.damping.modal, NONE)
         if case.start.at_rest:
-            ratio = closed_contact_damping(motion_plan.system, motion_plan.position)[1][0]
-            shown["damping ratio"].append(View("motion", 100.0 * ratio, NONE))
+            plan = initial_motion(build(case, boom, case.models[0]).system, case)
+            ratio = closed_contact_damping(plan.system, plan.position)[1][0]
+            yield View("damping ratio", "motion", 100.0 * ratio, NONE)
 
 
-def of_live(case: pt.Case, boom: Boom, shown: dict[str, list[View]]) -> None:
+def of_live(case: pt.Case, boom: Boom) -> Iterator[View]:
     answer = next(beam_results(CheckedCase(case), Draft("", case, boom), lambda: None))
     for words, quantity in (
         ("Static tip deflection (t = 0)", "tip at t = 0"),
@@ -210,13 +201,12 @@ def of_live(case: pt.Case, boom: Boom, shown: dict[str, list[View]]) -> None:
     ):
         for row in answer["rows"]:
             if row[0].startswith(words):
-                shown[quantity].append(View("live", number(row[1]), THREE))
+                yield View(quantity, "live", number(row[1]), THREE)
 
 
-def of_export(case: pt.Case, boom: Boom, checked: Check, shown: dict[str, list[View]]) -> None:
+def of_export(case: pt.Case, boom: Boom, checked: Check) -> Iterator[View]:
     """Compare the loads of the last segment in the OpenSees script with its contact forces."""
     model = case.models[0]
-    assert isinstance(model, BeamElements)
     try:
         script = opensees.script(case, model.model_boom(boom), model, None)
     except pt.BoomError:
@@ -231,54 +221,45 @@ def of_export(case: pt.Case, boom: Boom, checked: Check, shown: dict[str, list[V
     )
     table = checked.frames["Reactions of supports and contacts at rest, t = 0"]
     up = table[table["segment"] == boom.segments[-1].name].iloc[:, 2].astype(float).sum()
-    shown["load of the last segment"] += [
-        View("OpenSees", -1e-3 * down, NONE),
-        View("check", up, FOUR),
-    ]
+    yield View("load of the last segment", "OpenSees", -1e-3 * down, NONE)
+    yield View("load of the last segment", "check", up, FOUR)
 
 
-def of_sweep(case: pt.Case, shown: dict[str, list[View]]) -> None:
-    assert case.gravity is not None
+def of_sweep(case: pt.Case) -> Iterator[View]:
     gravity = case.gravity.acceleration
     data = pt.sweep(case, {"gravity.acceleration": [gravity, 1.01 * gravity]})
     for name, quantity, factor in (
         ("tip_at_rest", "largest tip", -1e3),
         ("first_frequency", "first frequency", 1.0),
     ):
-        shown[quantity].append(View("sweep", factor * float(data[name].values.ravel()[0]), NONE))
+        yield View(quantity, "sweep", factor * float(data[name].values.ravel()[0]), NONE)
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("empty_cache")
-@pytest.mark.parametrize("name", [*SHIPPED, *OWN])
+@pytest.mark.parametrize("name", [*NAMES, *OWN])
 def test_views_show_the_same_numbers(name: str) -> None:
     """Reference: each other, up to the digits that they show.
 
     ``check`` left a load on a rope out across the boom: -543 mm for -1816 mm of ``hoist``.
     """
     case, boom = case_of(name)
-    shown: dict[str, list[View]] = defaultdict(list)
     checked = pt.check(case)
-    of_check(checked, shown)
-    of_prove(case, boom, shown)
-    of_run(case, boom, shown)
-    of_live(case, boom, shown)
-    if name == "hanging":
-        # A sweep starts processes, which takes longer than all other views.
-        of_sweep(case, shown)
-    of_export(case, boom, checked, shown)
     hertz = first_frequencies(case, case.models[0], None, None)[0, 0]
-    shown["first frequency"].append(View("frequencies", hertz, NONE))
-    shown["mass"].append(View("boom", boom.mass, NONE))
+    views = [
+        *of_check(checked), *of_prove(case, boom), *of_run(case, boom), *of_live(case, boom),
+        # A sweep starts processes, which takes longer than all other views.
+        *(of_sweep(case) if name == "hanging" else ()), *of_export(case, boom, checked),
+        View("first frequency", "frequencies", hertz, NONE), View("mass", "boom", boom.mass, NONE),
+    ]  # fmt: skip
     stated = f"{boom.yielding.capitalize()} are rigid in 'beam'." in checked.lines
     assert stated == bool(boom.yielding)
-    for quantity, views in shown.items():
-        for one in views:
-            for other in views:
-                if one.walls == other.walls or not boom.yielding:
-                    within = (one.error + other.error) * max(abs(one.value), abs(other.value))
-                    assert abs(one.value - other.value) <= within, (quantity, one, other)
+    for one, other in combinations(views, 2):
+        alike = one.walls == other.walls or not boom.yielding
+        if one.quantity == other.quantity and alike:
+            within = (one.error + other.error) * max(abs(one.value), abs(other.value))
+            assert abs(one.value - other.value) <= within, (one, other)
     if case.limits is not None and case.limits.tip_at_rest is not None:
-        (tip,) = (one for one in shown["largest tip"] if one.name == "check")
+        (tip,) = (x for x in views if (x.quantity, x.name) == ("largest tip", "check"))
         exceeded = abs(tip.value) > 1e3 * case.limits.tip_at_rest
         assert any("is exceeded: the static tip" in one for one in checked.lines) == exceeded
