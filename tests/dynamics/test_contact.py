@@ -10,7 +10,6 @@ from scipy.integrate import trapezoid
 
 from protractile.dynamics.contact import PowerContact, contact_limits, restitution_damping
 from protractile.dynamics.contact_table import TableContact
-from protractile.dynamics.damping import closed_contact_damping, with_modal_damping
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.gap_system import GapSystem
@@ -82,7 +81,7 @@ def test_the_slope_is_known_at_any_force(exponent: float, force: float) -> None:
     assert linear.slope_at(np.inf) == pytest.approx(1.0e9)
 
 
-@pytest.mark.parametrize("restitution", [0.05, 0.8, 0.99999, 1.0 - 1e-12])
+@pytest.mark.parametrize("restitution", [0.05, 0.99999, 1.0 - 1e-12])
 def test_damping_of_a_restitution(restitution: float) -> None:
     """Reference: analytic, (e + 1) v = ln[(1 + d v)/(1 − d e v)]/d, and d = 3(1 − e)/(2 v) near e =
     1 (Hunt and Crossley 1975).
@@ -197,15 +196,6 @@ def test_mode_buckles_at_zero_stiffness() -> None:
     # A tension never buckles it, and nothing is left to buckle where nothing moves.
     assert buckling_factor(np.array([[9.0]]), np.array([[-2.0]])) == float("inf")
     assert buckling_factor(np.zeros((0, 0)), np.zeros((0, 0))) == float("inf")
-
-
-def test_boom_in_contact_has_the_given_damping() -> None:
-    """Reference: the given ratio, for a tipping mass bonded to an elastic one."""
-    stops = PowerContact(1.0e6, 1.0).with_clearance(0.01)
-    two = modal_system([-16.0, 400.0], [-9.0, 0.0], [0.5, -0.4], [stops], tip=[1.0, 1.0])
-    omega, ratios = closed_contact_damping(with_modal_damping(two, 0.03))
-    assert (omega > 0.0).all()
-    assert ratios[0] == pytest.approx(0.03, rel=1e-6)
 
 
 @pytest.mark.parametrize(("exponent", "force"), [(1.0, 300.0), (2.0, 1200.0)])

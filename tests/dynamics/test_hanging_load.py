@@ -61,14 +61,7 @@ def test_factor_of_a_rigid_boom() -> None:
 
 
 def test_load_under_a_boom_at_constant_slewing_speed() -> None:
-    """Reference: analytic. The load swings with √(g/l) ± ψ̇ about ψ̇² R l/(g − ψ̇² l) outwards; and
-    x = −(a l/g) (1 − cos √(g/l) t) behind a support with a constant acceleration.
-    """
-    swing = Pendulum(4.0, FrameMotion(), 10.0, Stroke(8.0, 1.0, 2.0))
-    data = hoisted(HangingLoad(MASS, ROPE, GRAVITY, pendulum=swing), RIGID, 2.0, 1.0e-3).data
-    behind = 0.5 * 4.0 / GRAVITY * (1.0 - np.cos(np.sqrt(GRAVITY / 4.0) * data["time"].values))
-    assert data["swing_out"].values == pytest.approx(-behind, abs=1e-6)
-    assert not data["swing_aside"].values.any()
+    """Reference: analytic. The load swings with √(g/l) ± ψ̇ about ψ̇² R l/(g − ψ̇² l) outwards."""
     rate, own = np.deg2rad(10.0), np.sqrt(GRAVITY / 3.0)
     frame = FrameMotion(slew=Stroke(900.0, 10.0, 10.0), radius=-1.0)
     load = HangingLoad(MASS, ROPE, GRAVITY, pendulum=Pendulum(3.0, frame, 11.0, HistorySum(())))
@@ -121,9 +114,7 @@ def test_load_swings_during_slewing_and_luffing() -> None:
     stretched = sagged * np.cos(np.deg2rad(50.0)) - MASS * GRAVITY / ROPE
     start = [sagged, 0.0, stretched, -sagged * np.sin(np.deg2rad(50.0)), 0.0, *np.zeros(5)]
     times = 1.0e-2 * np.arange(251)
-    exact = solve_ivp(
-        rates, (0.0, 2.5), start, "DOP853", times, rtol=1e-8, atol=1e-10, max_step=0.02
-    ).y
+    exact = solve_ivp(rates, (0.0, 2.5), start, "DOP853", times, rtol=1e-8, atol=1e-10).y
     swung = exact[3] + exact[0] * np.sin(frame.luff_angle(times)), exact[4] - exact[1]
     errors = []
     for step in (2.0e-3, 1.0e-3):

@@ -134,7 +134,7 @@ def telescoping() -> Motion:
 
 
 def thrust() -> Motion:
-    return Motion(replace(pressed_along(SCurve(2.0, 0.5)), damping=np.zeros(6)), 0.5, 0.04)
+    return Motion(replace(pressed_along(SCurve(2.0, 0.25)), damping=np.zeros(6)), 0.25, 0.05)
 
 
 def driven() -> Motion:
