@@ -91,6 +91,7 @@ def measure_boom(states: States) -> Iterator[Measured]:
     for number, cylinder in enumerate(boom.cylinders, start=1):
         part = "cylinder" if len(boom.cylinders) == 1 else f"cylinder {number}"
         force, at = states.observed(force_name(number)), (time, cylinder.x)
+        # A cylinder that pulls has another resistance than one that pushes.
         limits = cylinder.resistance(), cylinder.resistance(pulls=True)
         if cylinder.spread == 0.0:
             forces = np.maximum(force, 0.0), np.minimum(force, 0.0)

@@ -177,7 +177,7 @@ class ObliqueForce(NamedTuple):
     x: float  #: x in m of the place, or of the end of the boom
     vector: Array  #: force (3,) in N along x, y and z
     history: History  #: its factor over time
-    head: Head | None = None  #: the head, if the force acts where the payload hangs
+    head: Head | None = None  #: its place ahead of, below and beside the axis; None on the axis
 
     def loads(self) -> Iterator[Load]:
         """Yield the loads across the boom, and the moments and the torque about its end."""
@@ -266,9 +266,6 @@ def lead_of(case: Case, segments: Sequence[Segment], weight: float) -> Iterator[
     if rope.falls is not None and hoist is not None and hoist.falls != 1:
         raise BoomError("rope.falls", "hoist.falls is given; leave one of them out")
     falls = rope.falls or (1 if hoist is None else hoist.falls)
-    if rope.sheave is not None and hoist is not None:
-        what = "the load of hoist hangs at the end of the boom; leave it out"
-        raise BoomError("rope.sheave", what)
     at_end = partial(segments[-1].surfaces, end)
     sheave = resolve_level(rope.sheave or Sheave(), "rope.sheave", at_end)
     lead = Lead(last, end, weight / falls, foot.x - rope.winch, 0.0, sheave.ahead, sheave.below)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Small systems, chaotic ones among them, and their motions by another code."""
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.integrate import solve_ivp
 
@@ -9,6 +11,7 @@ from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.gap_system import GapSystem, Observer
 from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.motion import Motion
+from protractile.dynamics.trajectory import Trajectory
 from protractile.dynamics.travel import ROW_KINDS, RowTable
 from tests.modal import modal_system
 
@@ -84,6 +87,18 @@ def errors_in_the_step(motion: Motion, expected: Array, steps: Array) -> Array:
 def slopes(errors: Array) -> Array:
     """Return the orders of convergence from errors of steps, each half the previous one."""
     return np.log2(errors[:-1] / errors[1:])
+
+
+def with_rates(system: GapSystem) -> GapSystem:
+    """Return the system with the velocities of all modes as observers."""
+    rates = {f"v{i}": Observer(row, "m/s", 1) for i, row in enumerate(np.eye(system.num_modes))}
+    return replace(system, observers={**system.observers, **rates})
+
+
+def end_of(run: Trajectory) -> tuple[Array, Array]:
+    """Return coordinates and velocities (num_modes,) at the end of a run :func:`with_rates`."""
+    a = run.states[-1]
+    return a, np.array([float(run.data[f"v{i}"][-1]) for i in range(a.size)])
 
 
 NUMBERS = {"omega2": [4.0, 31.0], "load": [2.0, 3.0], "tip": [1.0, 0.4]}

@@ -2,6 +2,7 @@
 """Moving rows and moving axial forces: matrices, energy balance, symmetry and histories."""
 
 import tracemalloc
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -19,7 +20,12 @@ from protractile.dynamics.motion import Motion
 from protractile.dynamics.motion_laws import HistorySum, SCurve, Stroke
 from protractile.dynamics.travel import MovingAxialForce, RowTable, Travel
 from tests.dynamics.reference import (
+    end_of,
+    errors_in_the_step,
+    runge_kutta,
+    slopes,
     table_slope,
+    with_rates,
 )
 from tests.modal import modal_system
 
@@ -100,6 +106,22 @@ def test_as_it_stands_its_own_modes_are_those_of_the_softer_boom() -> None:
         Motion(stands, 1.0)
 
 
+def test_a_motion_by_an_integration_of_its_own() -> None:
+    """Reference: other code, scipy's DOP853 with the matrix: order 2, error, and effect of the
+    force. The energy balance verifies the work of the drive.
+    """
+    drawn = pressed_along(SCurve(2.0, 1.0))
+    motion = Motion(replace(drawn, damping=np.zeros(6)), 1.0, 1e-2)
+    expected = runge_kutta(motion, 5e-3)
+    errors = errors_in_the_step(motion, expected, np.array([2e-3, 1e-3, 5e-4]))
+    assert slopes(errors) == pytest.approx(2.0, abs=0.2)
+    assert errors[-1] < 4e-4
+    plain = replace(motion.system, travels=[replace(drawn.travels[0], axial_forces=())])
+    (off,) = errors_in_the_step(replace(motion, system=plain), expected, np.array([5e-4]))
+    assert off > 0.05
+    assert FixedStep(5e-4)(motion).energy_residual < 1e-11
+
+
 # A simply supported beam: length in m, E J in N·m², mass per length in kg/m.
 LENGTH, STIFFNESS, MASS = 10.0, 1.0e7, 100.0
 
@@ -178,6 +200,30 @@ def test_a_moving_force_on_a_beam() -> None:
     modes = -2.0 * force / (MASS * LENGTH) * swings / (omega**2 - passing**2)
     series = (modes * np.sin(0.5 * k * np.pi)).sum(axis=0)
     assert np.abs(run.data["tip"].values - series).max() < 1.0e-4 * np.abs(series).max()
+
+
+@pytest.mark.parametrize("drawn", [lossy, pressed_along])
+def test_constant_travel_equals_no_travel_to_the_bit(
+    drawn: Callable[[History], GapSystem],
+) -> None:
+    """Reference: non-regression, the same system without a travel."""
+    moving = drawn(PiecewiseLinear([0.0, 1.0], [0.0, 0.0]))
+    resting = replace(moving, travels=())
+    runs = [FixedStep(5.0e-5)(Motion(system, 0.3, 1.0e-3)) for system in (moving, resting)]
+    assert np.array_equal(runs[0].states, runs[1].states)
+    assert runs[0].data.identical(runs[1].data)
+
+
+def test_it_runs_back_as_it_came() -> None:
+    """Reference: analytic, time reversibility in contact and under the drive."""
+    law = PowerContact(1.0e6, 1.5).with_clearance(1.0e-4)
+    there = rider(SCurve(5.0, 0.2), law, mass=20.0, weight=2.0e3, start=2.0)
+    out = FixedStep(1.0e-4)(Motion(with_rates(there), 0.2, 1.0e-3))
+    assert out.data.attrs["contact_changes"] > 0
+    place, speed = end_of(out)
+    back = rider(SCurve(-5.0, 0.2), law, mass=20.0, weight=2.0e3, start=7.0)
+    home = FixedStep(1.0e-4)(Motion(back, 0.2, 1.0e-3, place, -speed))
+    assert np.abs(home.states[::-1] - out.states).max() < 1.0e-9 * np.abs(out.states).max()
 
 
 def test_drive_friction_force() -> None:
