@@ -291,8 +291,8 @@ def test_cylinder_by_its_drawing(tmp_path: Path) -> None:
          "rope.ground: the rope's lead across the boom is that at t = 0; leave luff or hoist out"),
         (table("[rope]", falls=2, sheave={"below": -0.3})
          + table("[hoist]", mass=200.0, stiffness=1e6, hanging=True),
-         "rope.sheave: the load of hoist hangs at the end of the boom; leave ahead, below and beside "
-         "out"),
+         "rope.sheave: the load of hoist hangs at the end of the boom; leave ahead, below and "
+         "beside out"),
         (table("[rope]", falls=2, sheave={"beside": 0.3}),
          "rope.sheave.beside: unknown key; known ones are ahead, below"),
         (table("[head]", below={"left": 0.1}),
