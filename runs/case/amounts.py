@@ -43,15 +43,18 @@ def read_amounts(tables: Mapping[str, Any], file: str) -> tuple[dict[str, Any], 
     {'mass': 0.15}
 
     Raises:
-        BadInput: a unit is unknown.
+        BadInput: a unit is unknown, missing, or of another quantity than its key always has.
     """
     amounts: list[Amount] = []
     # Another name is refused afterwards.
     known = (name for name in get_args(SystemName) if name == tables.get("units"))
     system = System(next(known, "SI"))
 
-    def number(text: str, steps: Steps) -> Any:
+    def number(text: str, steps: Steps, units: Sequence[str]) -> Any:
         if (match := re.fullmatch(AMOUNT, text)) is None:
+            if re.fullmatch(AMOUNT, f"{text} -"):
+                what = f"has no unit; give one, or the number without quotes, got {text!r}"
+                raise BadInput(file, key_of(steps), what)
             return text
         try:
             unit = Unit.of(match[2].replace("°", "deg"))
@@ -62,15 +65,18 @@ def read_amounts(tables: Mapping[str, Any], file: str) -> tuple[dict[str, Any], 
             what = f"must have a known unit such as mm, kg, kN or MPa, got {format_value(text)}"
             raise BadInput(file, key_of(steps), what) from None
         amounts.append(Amount(steps, text, unit))
+        # The limits of a key hold in its unit. Several units are checked after the limits.
+        if len(units) == 1 and not re.search(r"\^\(?n", units[0]):
+            _check_unit(amounts[-1], units[0], system, file)
         return float(value)
 
-    def read(item: Any, steps: Steps, inside: Sequence[type], has_unit: bool) -> Any:
+    def read(item: Any, steps: Steps, inside: Sequence[type], units: Sequence[str]) -> Any:
         """Return a value with numbers; ``inside`` are the classes that its table may have."""
         if isinstance(item, list):
-            return [read(part, (*steps, i), inside, has_unit) for i, part in enumerate(item)]
+            return [read(part, (*steps, i), inside, units) for i, part in enumerate(item)]
         if isinstance(item, str):
-            plain = has_unit or not PLAIN_NUMBER_KEYS.keys().isdisjoint(inside)
-            return number(item, steps) if plain else item
+            plain = units or not PLAIN_NUMBER_KEYS.keys().isdisjoint(inside)
+            return number(item, steps, units) if plain else item
         if not isinstance(item, Mapping):
             return item
         parts = {}
@@ -78,11 +84,13 @@ def read_amounts(tables: Mapping[str, Any], file: str) -> tuple[dict[str, Any], 
             known = [fields_of(one)[names_of(one)[key]] for one in inside if key in names_of(one)]
             # Without a field, the key is a name, such as that of a segment with a velocity.
             classes = [one for field in known for one in tables_in(field.annotation)]
-            own = has_unit or any(map(declared_units, known))
-            parts[key] = read(value, (*steps, key), classes if known else inside, own)
+            own = [*dict.fromkeys(unit for field in known for unit in declared_units(field))]
+            # The unit may depend on another key.
+            own *= 2 if any("declared_units" in vars(one) for one in inside) else 1
+            parts[key] = read(value, (*steps, key), classes if known else inside, own or units)
         return parts
 
-    plain: dict[str, Any] = read(tables, (), [Case], False)
+    plain: dict[str, Any] = read(tables, (), [Case], [])
     return plain, amounts
 
 
@@ -92,17 +100,23 @@ def check_amounts(case: Case, amounts: Sequence[Amount], file: str) -> None:
     Raises:
         BadInput: a unit is one of another quantity.
     """
-    for steps, text, unit in amounts:
+    for amount in amounts:
+        steps = amount.steps
         # A normal distribution has the unit of its number.
         path = steps[:-1] if steps[-1] in ("mean", "sd") else steps
         units = units_of(*innermost(path, case), _exponents(case).get(key_of(path[:2]), 2.0))
         column = path[-1] if len(units) > 1 else 0
         expected = units[column] if isinstance(column, int) else units[0]
-        angles = [set(re.findall("deg|rad|°", one)) for one in (expected, text.replace("°", "deg"))]
-        if unit.dimension != Unit.of(expected).dimension or angles[0] != angles[1]:
-            name = "%" if expected == "1" else System(case.units).unit(expected)
-            what = f"must be in {name} or another unit of the kind, got {format_value(text)}"
-            raise BadInput(file, key_of(steps), what)
+        _check_unit(amount, expected, System(case.units), file)
+
+
+def _check_unit(amount: Amount, expected: str, system: System, file: str) -> None:
+    steps, text, unit = amount
+    angles = [set(re.findall("deg|rad|°", one)) for one in (expected, text.replace("°", "deg"))]
+    if unit.dimension != Unit.of(expected).dimension or angles[0] != angles[1]:
+        name = "%" if expected == "1" else system.unit(expected)
+        what = f"must be in {name} or another unit of the kind, got {format_value(text)}"
+        raise BadInput(file, key_of(steps), what)
 
 
 def innermost(steps: Steps, case: Case) -> tuple[Any, str]:

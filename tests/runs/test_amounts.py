@@ -79,8 +79,8 @@ def test_every_number_may_have_its_unit(text: str, units: str) -> None:
 )  # fmt: skip
 def test_a_text_is_a_number_in_the_units_of_the_case(text: str, number: float) -> None:
     """Reference: analytic, powers of ten."""
-    plain, _ = read_amounts({"units": "mm-t-s", "payload": {"mass": text}}, "case")
-    assert plain["payload"]["mass"] == number
+    plain, _ = read_amounts({"units": "mm-t-s", "load": [{"magnitude": text}]}, "case")
+    assert plain["load"][0]["magnitude"] == number
 
 
 def test_names_stay_as_they_are() -> None:
@@ -112,6 +112,12 @@ def test_names_stay_as_they_are() -> None:
             for text in ("1.2.3 m", "3 m^60 m^60", "3 GPa^30.5 GPa^30.5", "3 m/")
         ),
         (table("[head]", ahead="0,3 m"), "head.ahead: must be a number, got '0,3 m'"),
+        (table("[head]", mass="-3 kPa"),
+         "head.mass: must be in kg or another unit of the kind, got '-3 kPa'"),
+        (table("[damping]", modal="3 kg"),
+         "damping.modal: must be in % or another unit of the kind, got '3 kg'"),
+        (table("[head]", mass="900"),
+         "head.mass: has no unit; give one, or the number without quotes, got '900'"),
         (table("[head]", mass="-3 kg"), "head.mass: must be a number not less than 0, got -3.0"),
         (table("[[stop]]", segment="fly", x=9.0, play=0.2, stiffness="3e9 N/m^2"),
          "stop[1].stiffness: must be in N/m or another unit of the kind, got '3e9 N/m^2'"),
