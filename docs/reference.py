@@ -10,9 +10,11 @@ from typing import Any
 import typer
 
 from protractile.runs import cli
-from protractile.runs.case.schema import case_schema
+from protractile.runs.case.schema import Case, case_schema
 
 SCHEMA = case_schema()
+#: Tables of which [joints] and based_on do not take keys.
+WHOLE = Case.model_json_schema()["$defs"]
 FOLDER = Path(__file__).parent / "generated"
 #: Drawings for the tables that they explain.
 DRAWINGS = {
@@ -92,7 +94,7 @@ def _section(heading: str, name: str, table: dict[str, Any]) -> Iterator[str]:
     if "description" in table:
         yield f"{table['description']}\n"
     yield "| key | type | default | meaning |\n| :-- | :-- | :-- | :-- |"
-    required = table.get("required", ())
+    required = WHOLE.get(name, table).get("required", ())
     for key, entry in table["properties"].items():
         yield _row(key, entry, key in required)
     yield ""

@@ -341,7 +341,8 @@ def _weights(
         steps = pairwise(np.linspace(segment.start, segment.end, _STEPS + 1).tolist())
         ends = [(a, b, segment.section_at(a), segment.section_at(b)) for a, b in steps]
         weight = segment.material.density * gravity
-        spread = [(a, b, weight * mean_area(tail, head)) for a, b, tail, head in ends]
+        added = segment.added_mass_per_length * gravity
+        spread = [(a, b, weight * mean_area(tail, head) + added) for a, b, tail, head in ends]
     for (start, end), mass in segment.stiffeners:
         if start == end:
             points.append((start, mass * gravity))

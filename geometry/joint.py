@@ -201,8 +201,8 @@ class BareJoint:
     bonded: Flag = False
     """whether the segments are bonded at the stations, without play"""
     pad: Pad | None = None
-    """the table of the slide pads' size, which only shells use; unless given, contact is at the
-    corners of the boxes along contact_length"""
+    """the table of the slide pads, a pair on each side of each station, whose thickness sets the
+    stiffness; unless given, contact is at the corners of the boxes along contact_length"""
     pads: Annotated[tuple[SlidePad, ...], Few] = ()
     """the tables of several slide pads at each station, instead of pad and stiffness; pads of a
     side share its force in proportion to their stiffness"""

@@ -106,6 +106,8 @@ class Segment:
             section.
         yield_strengths: pairs of a plate, or of a side for all of its plates, and its yield
             strength in Pa; other plates have that of the material.
+        added_mass_per_length: the part of m̄ in kg/m that is uniform and not that of the plates,
+            such as hoses; a shell has it on its plates.
     """
 
     name: str
@@ -127,6 +129,7 @@ class Segment:
     compression: Compression = NO_COMPRESSION
     shear_stiffnesses: tuple[Positive, Positive] | None = None
     yield_strengths: tuple[tuple[str, Positive], ...] = ()
+    added_mass_per_length: NotNegative = 0.0
 
     def __post_init__(self) -> None:
         for group in ("supports", "masses", "collars", "diaphragms"):
@@ -181,7 +184,8 @@ class Segment:
             start,
             end,
             material,
-            mass_per_length=density * mean_area(section, head),
+            mass_per_length=density * mean_area(section, head)
+            + others.get("added_mass_per_length", 0.0),
             second_moment_of_area=second_moment,
             rotary_inertia=density * second_moment,
             section=section,
@@ -217,10 +221,12 @@ class Segment:
     @property
     def mass_centre(self) -> float:
         """The x in m of the centre of the distributed mass."""
+        middle = 0.5 * (self.start + self.end)
         if self.section is None or self.head_section is None:
-            return 0.5 * (self.start + self.end)
-        _, middle, head = areas(self.section, self.head_section)
-        return self.start + self.length * (2.0 * middle + head) / (6.0 * self.area)
+            return middle
+        _, half_way, head = areas(self.section, self.head_section)
+        of_plates = self.start + self.length * (2.0 * half_way + head) / (6.0 * self.area)
+        return of_plates + self.added_mass_per_length / self.mass_per_length * (middle - of_plates)
 
     def section_at(self, x: float) -> Section:
         """Return the section at x in m; the segment must have one."""
@@ -297,8 +303,8 @@ class Segment:
         """Return the prismatic segment with the section of this one at x in m."""
         if self.head_section is None:
             return self
-        section = self.section_at(x)
-        return Segment.of_section(self.name, self.start, self.end, self.material, section)
+        added, section = {"added_mass_per_length": self.added_mass_per_length}, self.section_at(x)
+        return Segment.of_section(self.name, *self.ends, self.material, section, **added)
 
     def property_ratio(self, number: Callable[[Segment], float], x: Array) -> Array:
         """Return the ratio (num_places,) of a property at x in m to its value for the segment."""

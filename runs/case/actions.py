@@ -267,7 +267,8 @@ def lead_of(case: Case, segments: Sequence[Segment], weight: float) -> Iterator[
         raise BoomError("rope.falls", "hoist.falls is given; leave one of them out")
     falls = rope.falls or (1 if hoist is None else hoist.falls)
     at_end = partial(segments[-1].surfaces, end)
-    sheave = resolve_level(rope.sheave or Sheave(), "rope.sheave", at_end)
+    where = "rope.sheave" if rope.sheave or not case.head else "head"
+    sheave = resolve_level(rope.sheave or case.head or Sheave(), where, at_end)
     lead = Lead(last, end, weight / falls, foot.x - rope.winch, 0.0, sheave.ahead, sheave.below)
     if rope.ground is None:
         yield lead

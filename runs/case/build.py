@@ -22,6 +22,7 @@ from protractile.geometry.support_check import check_contacts_at_rest
 from protractile.runs.case import actions, motions
 from protractile.runs.case.actions import field_values
 from protractile.runs.case.contact import JointTable
+from protractile.runs.case.load_tables import TelescopingTable
 from protractile.runs.case.schema import Case
 from protractile.runs.case.sections import SegmentTable
 from protractile.runs.case.segments import infer_sections, pinned_masses, segment_of
@@ -270,18 +271,20 @@ def telescoped_joints(case: Case) -> tuple[JointTable, ...]:
     Raises:
         BoomError: no joint has an extension, or one is below that of the retracted boom.
     """
-    table, lengths = case.telescoping, {one.name: one.length for one in case.segments}
-    if table is None:
+    lengths = {one.name: one.length for one in case.segments}
+    if case.telescoping is None and not any(joint.stroke for joint in case.joints):
         return case.joints
-    strokes: dict[int, tuple[float, float]] = {}
+    table, strokes = case.telescoping or TelescopingTable(), dict[int, tuple[float, float]]()
     for number, joint in enumerate(case.joints):
         inner, outer = (lengths.get(name) for name in (joint.inner, joint.outer))
-        if joint.extension is not None and inner is not None:
-            least = max(table.retracted, inner - (inner if outer is None else outer))
-            if least > joint.extension:
+        if joint.stroke or (joint.extension is not None and inner is not None):
+            longer = inner - outer if inner and outer else 0.0
+            least = max(table.retracted, longer) if joint.retracted is None else joint.retracted
+            stroke = joint.stroke or (joint.extension or 0.0) - least
+            if stroke < 0.0:
                 what = f"must be at least {least:g} m, that of the retracted boom"
                 raise BoomError(f"joint[{number + 1}].extension", what)
-            strokes[number] = least, joint.extension - least
+            strokes[number] = least, stroke
     if not strokes:
         raise BoomError("telescoping", "no joint has an extension; give the largest one to each")
     travel = table.extension * sum(stroke for _, stroke in strokes.values())
@@ -290,7 +293,7 @@ def telescoped_joints(case: Case) -> tuple[JointTable, ...]:
     for number, (least, stroke) in sorted(strokes.items(), reverse=from_tip):
         moved = table.extension * stroke if at_once else min(stroke, travel)
         travel -= moved
-        joints[number] = replace(joints[number], extension=least + moved)
+        joints[number] = replace(joints[number], extension=least + moved, stroke=None)
     return tuple(joints)
 
 
@@ -315,7 +318,7 @@ def _spans(
             raise BoomError(
                 where,
                 f"{joint.inner!r} has a span, which says how far it is out; give it by its length, "
-                "or leave extension out",
+                "or leave extension or stroke out",
             )
         if joint.inner in keys:
             raise BoomError(

@@ -171,7 +171,7 @@ def _joints(case: Case, table: LoadCaseTable) -> tuple[Any, ...]:
             what = f"no joint has {name!r} as inner segment; give {choices(inner)}"
             raise BoomError(f"extension.{name}", what)
     return tuple(
-        replace(joint, extension=table.extension[joint.inner])
+        replace(joint, extension=table.extension[joint.inner], stroke=None)
         if joint.inner in table.extension
         else joint
         for joint in case.joints

@@ -31,10 +31,7 @@ MOST_POINTS = 1000
 # A shorter travel in m counts as none.
 _MIN_TRAVEL = 1.0e-9
 
-PAD_WITHOUT_STIFFNESS = (
-    "has no thickness; give the thickness in m, from which the joint's stiffness follows, or the "
-    "joint's stiffness"
-)
+NO_STIFFNESS = "missing; give pad, with the thickness from which it follows, or stiffness in N/m^n"
 
 _POWER_LAW_KEYS = ("stiffness", "stiffness_below", "exponent")
 
@@ -63,10 +60,9 @@ def _check_law(table: ContactTable, power_keys: Sequence[str]) -> None:
     pad = table.elastic_pads_key if isinstance(table, JointTable) else None
     superfluous_key = pad or next(iter(tables), None)
     if superfluous_key is None:
-        if table.stiffness is None and getattr(table, "pad", None) is not None:
-            raise error_at(table, unsuitable(PAD_WITHOUT_STIFFNESS), "pad")
         if table.stiffness is None:
-            raise error_at(table, "missing", "stiffness")
+            fault = unsuitable(NO_STIFFNESS) if isinstance(table, JointTable) else "missing"
+            raise error_at(table, fault, "stiffness")
         return
     others = tables if pad else tables[1:]
     keys = others + [key for key in power_keys if getattr(table, key) is not None]
@@ -148,6 +144,10 @@ class JointTable(ContactTable, BareJoint):
     extension: Annotated[NotNegative, In("m")] | None = None
     """the length in m by which the inner segment protrudes from the outer one; needed if the inner
     segment has a length only"""
+    stroke: Annotated[Positive, In("m")] | None = None
+    """the stroke in m, in place of extension, which then is that of the retracted boom plus it"""
+    retracted: Annotated[NotNegative, In("m")] | None = None
+    """the extension in m of the retracted boom; telescoping.retracted unless given"""
     drive: DriveTable | None = None
     """the table of the drive that telescopes the inner segment during the motion; without it the
     extension is constant"""
@@ -167,6 +167,8 @@ class JointTable(ContactTable, BareJoint):
     def _one_law(self) -> Self:
         if self.pads and self.pad is not None:
             raise superfluous_error(self, "pads", "pad")
+        if self.stroke and self.extension is not None:
+            raise superfluous_error(self, "stroke", "extension")
         # With a lateral stiffness the lateral law is a power law, even if the vertical law is a
         # table.
         lateral = () if self.lateral_stiffness else ("lateral_exponent",)

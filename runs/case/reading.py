@@ -30,6 +30,7 @@ from protractile.runs.case.build import build_boom, check_ensemble_data, check_n
 from protractile.runs.case.columns import FileColumn, read_pairs
 from protractile.runs.case.combinations import check_combinations
 from protractile.runs.case.contact import ContactTable, table_law
+from protractile.runs.case.inherited import with_inherited_keys
 from protractile.runs.case.kinds.model import ModelBoom
 from protractile.runs.case.kinds.shell import check_mesh_size
 from protractile.runs.case.limits import (
@@ -39,8 +40,9 @@ from protractile.runs.case.limits import (
     leaves,
     map_tables,
     units_of,
+    walk_tables,
 )
-from protractile.runs.case.load_tables import HistoryTable
+from protractile.runs.case.load_tables import HistoryTable, WindPressureTable
 from protractile.runs.case.messages import translated_errors
 from protractile.runs.case.motion_tables import TravelTable
 from protractile.runs.case.sanity import check_ranges, usual_ranges
@@ -94,7 +96,8 @@ def load_checked(path: str) -> CheckedCase:
 
 def load_spreads(path: str) -> list[Spread]:
     """Return the normal distributions in a case file; errors are those of :func:`load`."""
-    return take_means(read_amounts(_read(path), path)[0], path)[1]
+    tables = with_inherited_keys(_read(path), path)
+    return take_means(read_amounts(tables, path)[0], path)[1]
 
 
 def check_tables(tables: Mapping[str, object], path: str) -> CheckedCase:
@@ -105,7 +108,7 @@ def check_tables(tables: Mapping[str, object], path: str) -> CheckedCase:
     """
     try:
         with translated_errors(path):
-            plain, amounts = read_amounts(tables, path)
+            plain, amounts = read_amounts(with_inherited_keys(tables, path), path)
             given = Case.model_validate(take_means(plain, path)[0])
             check_amounts(given, amounts, path)
             case = convert_to_si(_read_files(given, path))
@@ -124,7 +127,7 @@ def check(case: Case, path: str) -> CheckedCase:
     checked = CheckedCase(case)
     try:
         with translated_errors(path):
-            _check_time(case.time)
+            _check_time(case)
             _check_boom(checked)
             clients.check(case, checked.boom)
     except BadInput as fault:
@@ -278,11 +281,14 @@ def _pairs_of_file(path: str, key: str, table: Any, system: System) -> dict[str,
         except ValueError as error:
             raise BadInput(path, key_of_file, str(error)) from None
     if isinstance(table, HistoryTable):
-        if not read.has_unit and table.amount not in table.model_fields_set:
+        if isinstance(table, WindPressureTable) and read.has_unit and table.speed is not None:
+            raise BadInput(path, f"{key}.speed", "the file has pressures; leave speed out")
+        # Values that are set are in the units of the case file; defaults would be in SI units.
+        if read.has_unit or table.amount in table.model_fields_set:
+            changes[table.amount] = getattr(table, table.amount)
+        elif not isinstance(table, WindPressureTable):  # it may have a speed, or that of the case
             what = describe(type(table), table.amount)
             raise BadInput(path, f"{key}.{table.amount}", f"missing; it is {what}")
-        # Values that are set are in the units of the case file; defaults would be in SI units.
-        changes[table.amount] = getattr(table, table.amount)
     return changes
 
 
@@ -324,7 +330,13 @@ def _unreadable(error: Exception, text: str) -> tuple[str, str]:
     return at_line, f"not TOML: {what} ({at_column}); see https://toml.io"
 
 
-def _check_time(time: TimeTable) -> None:
+def _check_time(case: Case) -> None:
+    time = case.time
+    for where, table in () if "duration" in time.model_fields_set else walk_tables(case):
+        moves = isinstance(table, HistoryTable) and table.description
+        if moves or isinstance(table, TravelTable):
+            what = f"missing, and {where} changes over time; it is "
+            raise BoomError("time.duration", what + describe(TimeTable, "duration"))
     outputs = time.duration / time.output_step
     if outputs > MOST_OUTPUTS:
         raise BoomError(

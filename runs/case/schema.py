@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, create_model, model_validator
 from pydantic.dataclasses import dataclass
-from pydantic.json_schema import GenerateJsonSchema
 
 from protractile.geometry.chassis import Chassis
 from protractile.geometry.cylinder import Cylinder
@@ -42,6 +41,7 @@ from protractile.runs.case.combination_tables import (
     SpectrumTable,
 )
 from protractile.runs.case.contact import JointTable
+from protractile.runs.case.inherited import schema_of_file
 from protractile.runs.case.kinds import KINDS
 from protractile.runs.case.kinds.calibration import CalibratedTable
 from protractile.runs.case.kinds.model import ModelTable
@@ -73,8 +73,8 @@ from protractile.runs.case.sections import PinnedMassTable, SegmentTable
 class TimeTable(CaseTable):
     """Duration, output interval and time step."""
 
-    duration: Annotated[Positive, In("s")]
-    """the simulated time in s, from t = 0"""
+    duration: Annotated[Positive, In("s")] = 2.0
+    """the simulated time in s, from t = 0; 2 s unless given, if nothing changes over time"""
     output_step: Annotated[Positive, In("s")] = 1.0e-3
     """the interval of the reported times in s"""
     step: Annotated[Positive, In("s")] | None = None
@@ -282,7 +282,7 @@ class CaseHeading(CaseTable):
 class Case(ClientKeys, CaseHeading):
     """A boom, and the models to run on it."""
 
-    time: TimeTable
+    time: TimeTable = TimeTable.model_validate({})
     """the table of the duration and the output step"""
     ensemble: EnsembleTable | None = None
     """the table of the ensembles; no ensembles unless given"""
@@ -352,9 +352,9 @@ class Case(ClientKeys, CaseHeading):
     spectra: Annotated[tuple[SpectrumTable, ...], Few] = Field((), alias="spectrum")
     """the sequences of load cases for the proof of fatigue, one [[spectrum]] each"""
     models: Annotated[tuple[Model, ...], Field(min_length=1, max_length=MOST_MODELS)] = Field(
-        alias="model"
+        (KINDS["finite-element"](name="timoshenko", kind="finite-element"),), alias="model"
     )
-    """the models to run, one [[model]] each"""
+    """the models to run, one [[model]] each; a Timoshenko beam of elements of 0.5 m unless given"""
 
     @model_validator(mode="after")
     def _segments_by_name(self) -> Self:
@@ -447,4 +447,4 @@ class Case(ClientKeys, CaseHeading):
 
 def case_schema() -> dict[str, Any]:
     """Return the JSON Schema of a case file."""
-    return {"$schema": GenerateJsonSchema.schema_dialect, **Case.model_json_schema()}
+    return schema_of_file(Case.model_json_schema())

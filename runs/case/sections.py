@@ -218,6 +218,8 @@ class SegmentTable(CaseTable):
     """the masses on the segment"""
     mass_per_length: Annotated[Positive, In("kg/m")] | None = None
     """the mass per length in kg/m; follows from the section unless given"""
+    added_mass_per_length: Annotated[NotNegative, In("kg/m")] = 0.0
+    """the mass per length in kg/m of hoses, cables and walkways, in addition to the section"""
     second_moment_of_area: Annotated[Positive, In("m^4")] | None = None
     """the second moment of area in m^4; follows from the section unless given"""
     rotary_inertia: Annotated[NotNegative, In("kg m")] | None = None

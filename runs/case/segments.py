@@ -38,7 +38,7 @@ def segment_of(
         start=ends[0],
         end=ends[1],
         material=material,
-        mass_per_length=mass,
+        mass_per_length=mass + table.added_mass_per_length,
         second_moment_of_area=second_moment,
         rotary_inertia=material.density * second_moment if rotary is None else rotary,
         section=section,
@@ -53,6 +53,7 @@ def segment_of(
         collars=table.collars,
         diaphragms=table.diaphragms,
         yield_strengths=tuple(table.yield_strengths.items()),
+        added_mass_per_length=table.added_mass_per_length,
     )
 
 

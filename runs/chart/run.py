@@ -12,7 +12,7 @@ from protractile.analysis.proofs import governing
 from protractile.analysis.rows import Row
 from protractile.geometry.typography import choices
 from protractile.runs.case import toml
-from protractile.runs.case.build import build_boom
+from protractile.runs.case.build import build_boom, telescoped_joints
 from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.schema import Case
@@ -128,7 +128,7 @@ def plan(case: Case, file: str) -> list[Configuration]:
         raise BadInput(file, "chart.radii", "give radii, or luffing, the angles in their place")
     if chart.extensions and chart.lengths:
         raise BadInput(file, "chart.lengths", "extensions are given; leave one of them out")
-    inner = [one.inner for one in case.joints if one.extension is not None]
+    inner = [one.inner for one in telescoped_joints(case) if one.extension is not None]
     for number, extension in enumerate(chart.extensions, start=1):
         for name in extension:
             if name not in inner:

@@ -51,6 +51,7 @@ _FIRST = {
     r"load\[(\d+)\]\.magnitude": "Load {}, across the boom",
     r"load\[(\d+)\]\.ramp": "Rise time of load {}",
     r"joint\[\d+\]\.extension": "Extension, {owner}",
+    r"joint\[\d+\]\.stroke": "Stroke, {owner}",
     r"joint\[\d+\]\.drive\.(time|speed)": "Telescoping {}, {owner}",
     r"joint\[\d+\]\.play": "Play, {owner}",
     r"joint\[\d+\]\.pad\.(length|offset)": "Pad {}, {owner}",

@@ -89,6 +89,7 @@ class ShellForms:
         shear_correction: transverse shear stiffness as a fraction of G t_w; a large value gives the
             thin shell of Kirchhoff and Love.
         compression: membrane force along x in N/m, constant on each cell, positive in compression.
+        heavy: thickness in m that has mass, constant on each cell; ``thickness`` unless given.
 
     Attributes:
         loaded: thickness in m on which the unit load acts, constant on each cell; the caller may
@@ -104,10 +105,11 @@ class ShellForms:
         drilling: float = DRILLING,
         shear_correction: float = SHEAR_CORRECTION,
         compression: Any | None = None,
+        heavy: Any | None = None,
     ) -> None:
         self._space, self._thickness, self._material = space, thickness, material
         self._drilling, self._shear_correction = drilling, shear_correction
-        self._compression = compression
+        self._compression, self._heavy = compression, heavy or thickness
         self.loaded = thickness.copy()
         self.load_direction = fem.Constant(space.mesh, np.zeros(3, dtype=PETSc.ScalarType))
 
@@ -133,7 +135,7 @@ class ShellForms:
         """The bilinear form of the mass matrix M (num_dofs, num_dofs)."""
         t, density = self._thickness, self._constant(self._material.density)
         (u, theta), (v, eta) = self._trial_and_test()
-        inertia = density * (t * ufl.inner(u, v) + t**3 / 12.0 * ufl.inner(theta, eta))
+        inertia = density * (self._heavy * ufl.inner(u, v) + t**3 / 12.0 * ufl.inner(theta, eta))
         return fem.form(inertia * ufl.dx(degree=4, domain=self._space.mesh))
 
     @cached_property

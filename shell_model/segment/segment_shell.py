@@ -98,7 +98,9 @@ class SegmentShell(ShellMatrices):
         collars = self._loads_on(lambda mesh: (mesh.thickness - mesh.plain) * (mesh.plain > 0.0))
         diaphragms = self._loads_on(lambda mesh: mesh.thickness * (mesh.plain == 0.0))
         of_stiffeners = collars[direction] + diaphragms[direction]
-        whole = force * self.plain_loads[direction]
+        added = acceleration * self.segment.added_mass_per_length
+        whole = (force - added) * self.plain_loads[direction]
+        whole += added * self.unit_loads[direction]
         return whole + acceleration * (self.segment.material.density * of_stiffeners)
 
     def rotation_load(self, direction: Direction) -> Array:

@@ -270,13 +270,16 @@ def assemble_plates(
     if mesh is not None:
         # Collars do not carry the axial force, so that it is the same in all sections.
         membrane_force = segment.compression(mesh.along) / segment.area * mesh.load_weight
-        points, triangles, of_cells = mesh.points, mesh.triangles, (mesh.thickness, membrane_force)
+        added = segment.added_mass_per_length / (segment.material.density * segment.area)
+        points, triangles = mesh.points, mesh.triangles
+        of_cells = (mesh.thickness, membrane_force, mesh.thickness + added * mesh.load_weight)
     domain = compat.create_mesh(comm, points, triangles)
-    thickness, compression = (
+    thickness, compression, heavy = (
         compat.cellwise_function(domain, values) for values in comm.bcast(of_cells)
     )
     space = compat.shell_space(domain)
-    forms = ShellForms(space, thickness, segment.material, compression=compression)
+    heavy = heavy if segment.added_mass_per_length else thickness
+    forms = ShellForms(space, thickness, segment.material, compression=compression, heavy=heavy)
     supports = [dirichlet_condition(space, *support) for support in _rigid_supports(segment)]
     return Plates(space, forms, supports, bool(segment.compression), copies)
 

@@ -296,8 +296,9 @@ HEAD = BoxSection(height=0.3, width=0.35, flange=0.01, web=0.008)
 LENGTH = BeamElements(name="beam", kind="finite-element").element_length
 
 
-def arm(*supports: Support) -> Segment:
+def arm(*supports: Support, added: float = 0.0) -> Segment:
     others = {"head_section": HEAD, "supports": supports or (Support(0.0, "clamped"),)}
+    others["added_mass_per_length"] = added
     return Segment.of_section("arm", 0.0, 8.0, STEEL, ROOT, **others)
 
 
@@ -326,13 +327,17 @@ def local(x: float) -> BoxSection:
     return BoxSection(*(a + x / 8.0 * (b - a) for a, b in zip(*ends, strict=True)))
 
 
-def test_mass_equals_the_mass_of_the_plates() -> None:
-    """Reference: by hand, ∫ A dx = 8 (A_0 + 4 A_m + A_1)/6 and its centroid, in all models."""
+@pytest.mark.parametrize("added", [0.0, 40.0])
+def test_mass_equals_the_mass_of_the_plates(added: float) -> None:
+    """Reference: by hand, ∫ A dx = 8 (A_0 + 4 A_m + A_1)/6 and its centroid, in all models; hoses
+    have theirs at 4 m."""
     sections = [ROOT, BoxSection(0.55, 0.425, 0.015, 0.01), HEAD]
     areas = [section.area for section in sections]
     mass = 7850.0 * 8.0 * (areas[0] + 4.0 * areas[1] + areas[2]) / 6.0
     middle = 8.0 * (2.0 * areas[1] + areas[2]) / (areas[0] + 4.0 * areas[1] + areas[2])
-    segment = arm(Support(0.0, stiffness=1e6), Support(8.0, stiffness=1e6))
+    moment = mass * middle + 8.0 * added * 4.0
+    segment = arm(Support(0.0, stiffness=1e6), Support(8.0, stiffness=1e6), added=added)
+    assert segment.mass_moment == pytest.approx(moment, rel=1e-12)
     felt = Load(0, "z", segment.mass_per_length, None, Step(), inertial=True)
     boom = Boom((segment,), (), (felt,))
     for models in (
@@ -344,17 +349,18 @@ def test_mass_equals_the_mass_of_the_plates() -> None:
         resting = static_response(system, system.excitations[0].load)
         # 1 m/s² on springs of 1e6 N/m: the tip's carries m g x_m/8.
         tip = system.observers["tip"].row @ resting
-        assert tip == pytest.approx(1e-6 * mass * middle / 8.0, rel=1e-5)
+        assert tip == pytest.approx(1e-6 * moment / 8.0, rel=1e-5)
 
 
-def test_axial_weights_follow_the_taper() -> None:
+@pytest.mark.parametrize("added", [0.0, 40.0])
+def test_axial_weights_follow_the_taper(added: float) -> None:
     """Reference: by hand. The foot carries the whole upright boom, the midpoint the upper half."""
-    (pressed,) = with_compression([arm()], [], [], gravity=10.0)
+    (pressed,) = with_compression([arm(added=added)], [], [], gravity=10.0)
     upper = 4.0 * (BoxSection(0.55, 0.425, 0.015, 0.01).area + HEAD.area) / 6.0
     upper += 4.0 * 4.0 * BoxSection(0.425, 0.3875, 0.0125, 0.009).area / 6.0
     places = pressed.compression(np.array([1e-12, 4.0]))
     assert places[0] == pytest.approx(10.0 * 8.0 * pressed.mass_per_length, rel=1e-9)
-    assert places[1] == pytest.approx(7850.0 * 10.0 * upper, rel=1e-9)
+    assert places[1] == pytest.approx(10.0 * (7850.0 * upper + 4.0 * added), rel=1e-9)
 
 
 def test_twist_follows_the_local_constant() -> None:

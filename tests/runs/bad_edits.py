@@ -170,8 +170,8 @@ CONTACTS = [
     }),
     *replacing("stiffness = 1e13\nexponent = 2.0", {
         "pad = { length = 0.1, width = 0.06 }":
-            "joint[1].pad: has no thickness; give the thickness in m, from which the joint's "
-            "stiffness follows, or the joint's stiffness",
+            "joint[1].stiffness: missing; give pad, with the thickness from which it follows, or "
+            "stiffness in N/m^n",
         "pads = [{ side = 'below', length = 0.1, width = 0.06, thickness = 0.02 }]":
             "joint[1].pads: none is above; give each side one at least",
         "pads = [{ side = 'left', length = 0.1, width = 0.06, thickness = 0.02 }]":

@@ -254,13 +254,15 @@ EXEMPT = {
     ),
     "its range follows from its material and section (part_ranges)": (
         "youngs_modulus", "density", "yield_strength", "yield_strengths", "mass_per_length",
-        "torsion_constant", "second_moment_of_area", "lateral_second_moment_of_area",
+        "added_mass_per_length", "torsion_constant", "second_moment_of_area",
+        "lateral_second_moment_of_area",
     ),
     "the sizes of the whole section have ranges (part_ranges)": (
         "SectionTable", "UnequalBoxTable", "PolygonTable", "HexagonTable", "OctagonTable", "UTable",
     ),
     "its range follows from the joint or the cylinder (sanity)": (
-        "JointTable.play", "lateral_play", "extension", "ground", "EarthPoint",
+        "JointTable.play", "lateral_play", "extension", "stroke", "JointTable.retracted", "ground",
+        "EarthPoint",
     ),
     "its range follows from the boom (chart.run)": ("ChartTable",),
     "any angle": ("LoadTable.direction", "WindPressureTable.direction"),

@@ -156,6 +156,7 @@ def test_telescoping_by_a_fraction_of_the_stroke(
 ) -> None:
     """Reference: analytic, half of the strokes of 3.8 m between 0.2 and 4 m, in each order."""
     text = DRAWN + JACK + box("tip", 5.0, (0.20, 0.14, 0.006, 0.006)) + drawn_out("tip", "fly")
+    text = text.replace("extension = 4.0", "stroke = 3.8\nretracted = 0.2", 1)
     text += table("[telescoping]", extension=0.5, order=order, retracted=0.2)
     text += table("[[load_case]]", name="out", telescoped=1.0)
     text += table("[[load_case]]", name="in", telescoped=0.0)
@@ -260,6 +261,11 @@ def test_cylinder_by_its_drawing(tmp_path: Path) -> None:
          "wind.shape_factor: must be one number, or one for each of 2 segments, got 3"),
         (table("[wind]", pressure=100.0, speed=10.0, shape_factor=1.2),
          "wind.speed: pressure is given; leave one of them out"),
+        (table("[wind]", speed=10.0, shape_factor=1.2, file="gust.csv"),
+         "wind.speed: the file has pressures; leave speed out"),
+        (table("[wind]", shape_factor=1.2),
+         "wind.pressure: missing; it is the dynamic pressure in Pa; a factor, 1 unless given, if "
+         "the heading of its file has such a unit"),
         (table("[wind]", pressure=1.0, shape_factor=1.2, direction="left"),
          "wind.direction: must be 'behind', 'side' or 'front', or an angle in degrees, got 'left'"),
         (table("[[load_case]]", name="up", angle=88.0) + LIMITED,
@@ -304,4 +310,5 @@ def test_cylinder_by_its_drawing(tmp_path: Path) -> None:
     ],
 )  # fmt: skip
 def test_contradictions_are_refused(tmp_path: Path, text: str, line: str) -> None:
+    (tmp_path / "gust.csv").write_text("t (s),q (Pa)\n0,100\n1,200\n", encoding="utf-8")
     assert refusal(tmp_path, DRAWN + JACK + text) == line

@@ -56,6 +56,9 @@ RAM = table(
 )  # fmt: skip
 CAGE = table("[head]", ahead=0.2, below=0.1, mass=60.0, level={"front": 0.8, "below": 0.5})
 LOW = table("[[load_case]]", name="low", angle=10.0, payload=230.0)
+OUT, IN = "extension = 4.0", table("[telescoping]", retracted=0.2)
+# Mass per length of the plates of the fly, by its outer and inner rectangles.
+PLATES = 7850.0 * (0.256 * 0.186 - 0.244 * 0.174)
 LEADS = {"front": -1.5 * ALONG, "below": 1.5 * ACROSS}
 
 
@@ -81,6 +84,14 @@ LEADS = {"front": -1.5 * ALONG, "below": 1.5 * ACROSS}
         (DRAWN + JACK + CAGE + LOW, DRAWN + JACK + at_angle(10.0) + LOW),
         (DRAWN + JACK + table("[rope]", falls=2, ground=LEADS),
          DRAWN + JACK + table("[rope]", falls=2, winch=1.5)),
+        (DRAWN + JACK + HEAD + table("[rope]", falls=2),
+         DRAWN + JACK + HEAD + table("[rope]", falls=2, sheave={"ahead": 0.8, "below": 0.5})),
+        (DRAWN.replace(OUT, "stroke = 3.8\nretracted = 0.2") + JACK, DRAWN + JACK),
+        (DRAWN.replace(OUT, "stroke = 3.8") + JACK + IN, DRAWN + JACK),
+        (DRAWN.replace("length = 5.0", "length = 6.3").replace(OUT, "stroke = 3.7") + JACK,
+         DRAWN.replace("length = 5.0", "length = 6.3") + JACK),
+        (DRAWN.replace('name = "fly"', 'name = "fly"\nadded_mass_per_length = 11.0') + JACK,
+         DRAWN.replace('name = "fly"', f'name = "fly"\nmass_per_length = {PLATES + 11.0}') + JACK),
     ],
 )  # fmt: skip
 def test_a_drawing_says_what_was_computed_by_hand(tmp_path: Path, drawn: str, by_hand: str) -> None:
@@ -146,6 +157,8 @@ GUST = {
         ({"speed": 30.0, "direction": "front"}, {"speed": 30.0, "direction": "front"}),
         ({"direction": "front"}, {**GUST, "direction": "front"}),
         ({"ramp": 0.5}, {"pressure": 125.0, "ramp": 0.5}),
+        ({"file": "gust.csv"}, {"pressure": 125.0, "table": [[0.0, 1.0], [1.0, 2.0]]}),
+        ({"speed": 20.0, "file": "gust.csv"}, {"speed": 20.0, "table": [[0.0, 1.0], [1.0, 2.0]]}),
     ],
 )
 def test_the_wind_of_a_load_case_says_what_differs(
@@ -153,6 +166,7 @@ def test_the_wind_of_a_load_case_says_what_differs(
 ) -> None:
     """Reference: other input, the load case with all keys of its wind; a pressure or a speed comes
     without the gust, a direction with it."""
+    (tmp_path / "gust.csv").write_text("0,1\n1,2\n", encoding="utf-8")
     shared = {key: GUST[key] for key in ("shape_factor", "load_area")}
     whole = shared | whole
     text, cases = DRAWN + JACK + table("[wind]", **GUST) + FACTORS, []

@@ -112,7 +112,9 @@ def test_one_key_draws_all_segments_out(extension: float, tip: float) -> None:
          "length"),
         ("length = 9.5", "span = [8.5, 18.0]",
          "joint[1].extension: 'middle' has a span, which says how far it is out; give it by its "
-         "length, or leave extension out"),
+         "length, or leave extension or stroke out"),
+        ("extension = 8.0", "extension = 8.0\nstroke = 7.0",
+         "joint[1].extension: stroke is given; leave one of them out"),
         ("extension = 7.5\n", "",
          "segment[3].length: nothing says where 'fly' is; give an extension to the joint in which "
          "it slides, or a span to the segment"),

@@ -192,8 +192,8 @@ def test_table_approximates_the_sampled_law(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("law", "message"),
     [
-        ("exponent = 2.0", "joint[1].stiffness: missing; it is the contact stiffness in N/m^n "
-         "where the inner segment presses up"),
+        ("exponent = 2.0", "joint[1].stiffness: missing; give pad, with the thickness from which "
+         "it follows, or stiffness in N/m^n"),
         ("force_table = [[1e-3, 2.0]]\nstiffness = 1e9",
          "joint[1].stiffness: force_table is given; leave one of them out"),
         ("force_table = [[1e-3, 2.0]]\nlateral_play = 0.01\nlateral_exponent = 2.0",

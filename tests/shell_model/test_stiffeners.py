@@ -79,13 +79,19 @@ def test_rigid_motions_cost_no_energy_and_carry_the_mass_of_the_stiffeners() -> 
     assert inertia.diagonal()[:3] == pytest.approx([mass] * 3, rel=1.0e-11)
     # A pitch by one radian lowers what lies beyond the middle.
     assert inertia[2, 4] == pytest.approx(-moment, rel=1.0e-11)
+    hoses = shell_of(collars=COLLARS, diaphragms=PLATES, added_mass_per_length=30.0)
+    inertia = motions.T @ times(hoses.mass, motions)
+    assert inertia.diagonal()[:3] == pytest.approx([mass + 300.0] * 3, rel=1.0e-11)
+    assert inertia[2, 4] == pytest.approx(-moment, rel=1.0e-11)
 
 
 def test_a_thrown_segment_flies_with_its_stiffeners() -> None:
     """Reference: analytic. All parts of a free segment have the initial velocity of 0.1 m/s."""
     outer, inner = flat_boom().segments
-    own = {"diaphragms": (Diaphragm(9.0, 0.016),), "collars": (Collar((9.0, 9.5), 0.01),)}
-    thrown = Load(1, "z", 0.1 * inner.mass_per_length, None, Step(), inertial=True)
+    mass = inner.mass_per_length + 30.0
+    own: dict[str, Any] = {"mass_per_length": mass, "added_mass_per_length": 30.0}
+    own |= {"diaphragms": (Diaphragm(9.0, 0.016),), "collars": (Collar((9.0, 9.5), 0.01),)}
+    thrown = Load(1, "z", 0.1 * mass, None, Step(), inertial=True)
     stiff = replace(flat_boom(), segments=(outer, replace(inner, **own)), loads=(thrown,))
     system = reduce_boom(touching(stiff, LAW), ShellOptions(0.5), MPI.COMM_WORLD).system
     velocity = system.excitations[0].load
