@@ -11,6 +11,7 @@ import pytest
 from protractile.cases import load_case
 from protractile.runs import CASES
 from protractile.runs.case.amounts import innermost, read_amounts
+from protractile.runs.case.inherited import with_inherited_keys
 from protractile.runs.case.limits import Steps, leaves, units_of
 from protractile.runs.case.reading import load_spreads
 from protractile.runs.case.schema import Case, case_schema
@@ -31,7 +32,7 @@ MORE = (
 
 def with_units(text: str, units: str) -> dict[str, Any]:
     """Return the tables of a case in SI units with all numbers as text, in other units."""
-    tables: dict[str, Any] = tomllib.loads(text)
+    tables = with_inherited_keys(tomllib.loads(text), "case")
     case = Case.model_validate(tables)
     given: list[tuple[Steps, str]] = []
     for steps, value in leaves(tables):
