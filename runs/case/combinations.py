@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, TypeVar, get_args
 from protractile.geometry.boom import BoomError
 from protractile.geometry.typography import choices
 from protractile.runs.case.actions import payload_weight
-from protractile.runs.case.build import build_boom, check_names, hold_ground
+from protractile.runs.case.build import build_boom, check_names, hold_ground, telescoped_joints
 from protractile.runs.case.combination_tables import (
     CombinationTable,
     LoadCaseTable,
@@ -170,11 +170,12 @@ def _joints(case: Case, table: LoadCaseTable) -> tuple[Any, ...]:
         if name not in inner:
             what = f"no joint has {name!r} as inner segment; give {choices(inner)}"
             raise BoomError(f"extension.{name}", what)
+    if not table.extension:
+        return case.joints
+    full = case.telescoping and case.telescoping.model_copy(update={"extension": 1.0})
     return tuple(
-        replace(joint, extension=table.extension[joint.inner], stroke=None)
-        if joint.inner in table.extension
-        else joint
-        for joint in case.joints
+        replace(joint, extension=table.extension.get(joint.inner, joint.extension))
+        for joint in telescoped_joints(case.model_copy(update={"telescoping": full}))
     )
 
 

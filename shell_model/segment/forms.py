@@ -109,7 +109,7 @@ class ShellForms:
     ) -> None:
         self._space, self._thickness, self._material = space, thickness, material
         self._drilling, self._shear_correction = drilling, shear_correction
-        self._compression, self._heavy = compression, heavy or thickness
+        self._compression, self._heavy = compression, thickness if heavy is None else heavy
         self.loaded = thickness.copy()
         self.load_direction = fem.Constant(space.mesh, np.zeros(3, dtype=PETSc.ScalarType))
 

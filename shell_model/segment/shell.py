@@ -278,7 +278,7 @@ def assemble_plates(
         compat.cellwise_function(domain, values) for values in comm.bcast(of_cells)
     )
     space = compat.shell_space(domain)
-    heavy = heavy if segment.added_mass_per_length else thickness
+    heavy = heavy if segment.added_mass_per_length else None
     forms = ShellForms(space, thickness, segment.material, compression=compression, heavy=heavy)
     supports = [dirichlet_condition(space, *support) for support in _rigid_supports(segment)]
     return Plates(space, forms, supports, bool(segment.compression), copies)

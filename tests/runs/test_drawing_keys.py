@@ -156,15 +156,16 @@ def test_telescoping_by_a_fraction_of_the_stroke(
 ) -> None:
     """Reference: analytic, half of the strokes of 3.8 m between 0.2 and 4 m, in each order."""
     text = DRAWN + JACK + box("tip", 5.0, (0.20, 0.14, 0.006, 0.006)) + drawn_out("tip", "fly")
-    text = text.replace("extension = 4.0", "stroke = 3.8\nretracted = 0.2", 1)
+    text = text.replace("extension = 4.0", "stroke = 3.8", 1)
     text += table("[telescoping]", extension=0.5, order=order, retracted=0.2)
     text += table("[[load_case]]", name="out", telescoped=1.0)
     text += table("[[load_case]]", name="in", telescoped=0.0)
+    text += table("[[load_case]]", name="named", extension={"tip": 1.0})
     case = read_case(tmp_path, text)
     ends = [segment.end for segment in build_boom(case).segments[1:]]
     assert ends == pytest.approx([6.0 + fly_out, 6.0 + fly_out + tip_out], rel=1e-12)
     tips = [build_boom(combined.case).tip for combined in combined_cases(case)]
-    assert tips == pytest.approx([14.0, 6.4])
+    assert tips == pytest.approx([14.0, 6.4, 11.0])
 
 
 def test_a_section_by_outer_sizes_is_that_of_its_mid_lines(tmp_path: Path) -> None:

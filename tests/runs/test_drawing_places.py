@@ -260,15 +260,15 @@ WINCHES = {
 
 
 @pytest.mark.parametrize("head", ["", HEAD])
-@pytest.mark.parametrize("place", [{"below": -0.4}, {"ahead": 0.3, "below": {"top": -0.272}}])
+@pytest.mark.parametrize("place", [{}, {"below": -0.4}, {"ahead": 0.3, "below": {"top": -0.272}}])
 @pytest.mark.parametrize("winch", WINCHES)
 def test_rope_forces_turn_the_boom_about_its_foot(
     tmp_path: Path, winch: str, place: dict[str, object], head: str
 ) -> None:
-    """Reference: analytic, moments about the foot of the lead at the sheave, 0.4 m above the axis,
-    and of the weight of the payload, which hangs there without a head of its own."""
+    """Reference: analytic, moments about the foot of the lead at the sheave, 0.4 m above the axis
+    or at the head, and of the weight of the payload, which hangs there without a head."""
     keys, (x, z) = WINCHES[winch]
-    texts = "", table("[rope]", falls=2, sheave=place, **keys)
+    texts = "", table("[rope]", falls=2, **keys, **{"sheave": place} if place else {})
 
     def moment(text: str) -> float:
         loads = build_boom(read_case(tmp_path, DRAWN + JACK + head + text)).loads
@@ -279,6 +279,8 @@ def test_rope_forces_turn_the_boom_about_its_foot(
         )
 
     sheave = 10.0 + float("ahead" in place) * 0.3, 0.4
+    if not place:
+        sheave = (10.8, -0.5) if head else (10.0, 0.0)
     weight, line = 150.0 * G, (x - sheave[0], z - sheave[1])
     along, up = (0.5 * weight * part / hypot(*line) for part in line)
     expected = sheave[0] * up - sheave[1] * along
