@@ -43,8 +43,9 @@ _LEAST_RANGE = 1.0e-4
 # Fraction of the tolerance below which the next window has half as many steps.
 _COARSEN_BELOW = 0.125
 
-# Fraction of the error that remains after two halvings of the step in chaotic motion. In regular
-# motion at most a quarter remains.
+# Fraction of the error that remains in chaotic motion after two halvings of the step, or after
+# three with friction, whose sticking begins at a random phase of a step. In regular motion at most
+# a quarter remains.
 _REMAINS = 0.5
 
 # Sum of the errors of all windows, as a multiple of the tolerance, with which the comparison of
@@ -151,9 +152,9 @@ class AdaptiveStep:
     order, with dry friction first order.
 
     In chaotic motion no step meets a tolerance. So a step that resolves the largest impact is not
-    halved further in a window if two halvings leave more than half of the error, and in the whole
-    motion if three do, or if the difference is above 10 % and ten times the tolerance. Then the
-    finer motion is the result. The number of steps is limited.
+    halved further if two halvings leave more than half of the error, in a whole motion with
+    friction three, or if the difference of whole motions is above 10 % and ten times the tolerance.
+    Then the finer motion is the result. The number of steps is limited.
 
     >>> motion = AdaptiveStep()(Motion(ball, duration=1.0, position=[0.5]))
     >>> motion.data.attrs["step_error"] < 1e-3
@@ -181,6 +182,7 @@ class AdaptiveStep:
         differences = [error.between(coarse, schedule.coarser().run(motion))]
         most = _MOST_REFINED * MOST_STEPS * max(1.0, TOLERANCE / self.tolerance)
         independent = max(_INDEPENDENT, 10.0 * self.tolerance)
+        halvings = 3 if motion.system.frictions else 2
         while True:
             differences.append(error.between(fine, coarse))
             # Motions with sticking have first order. The error of smooth motions, which have second
@@ -191,7 +193,10 @@ class AdaptiveStep:
                 fine = coarse
                 break
             schedule = schedule.finer()
-            stalls = len(differences) > 3 and differences[-1] > _REMAINS * differences[-4]
+            stalls = (
+                len(differences) > halvings
+                and differences[-1] > _REMAINS * differences[-1 - halvings]
+            )
             chaotic = differences[-1] > independent or stalls
             if 2 * schedule.steps(motion) > most or (chaotic and np.isinf(fine.resolving_step)):
                 break
