@@ -25,15 +25,15 @@ STATEMENTS: dict[StatementId, str] = {
 }
 # Titles of the statements in the table of the terminal.
 TITLES: dict[str, str] = {
-    "S1": "4 and 5 terms coincide until contact",
+    "S1": "4 and 5 terms agree until contact",
     "S2": "4 and 5 terms end 20 % apart",
-    "S3": "models conform for 6 s, then stratify",
+    "S3": "models agree for 6 s, then differ",
     "S4": "deflection grows with the model",
     "S5": "play changes the motion",
     "S6": "head: greater relative differences",
-    "S7": "friction: models conform for 6 s",
+    "S7": "friction: models agree for 6 s",
     "S8": "friction: elements stable for 7 s",
-    "S9": "collision model has little influence",
-    "S10": "2000 steps of series, 4000 of elements",
+    "S9": "contact law has little influence",
+    "S10": "series 2000 steps, elements 4000",
     "S11": "more than two segments",
 }

@@ -128,23 +128,29 @@ def show(judged: Mapping[str, Addition], console: Console) -> int:
 
 
 def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> None:
-    """Print a line for each statement, with the verdict of the first run that decides it.
+    """Print a line for each statement, with the mark of the first run that decides it.
 
     ``runs`` has the verdicts by the name of their case.
     """
     found = decisive(runs)
     columns = [
-        Column("statement", [f"{verdict.id:3} {TITLES[verdict.id]}" for _, verdict in found]),
-        Column("verdict", [f"{MARKS[verdict.verdict]} {verdict.verdict}" for _, verdict in found]),
-        Column("measured", [verdict.with_unit(verdict.measured) for _, verdict in found]),
+        Column(
+            "statement",
+            [
+                f"{MARKS[verdict.verdict]} {verdict.id:3} {TITLES[verdict.id]}"
+                for _, verdict in found
+            ],
+        ),
+        Column("measured", [number(verdict.measured) for _, verdict in found]),
         Column("threshold", [verdict.with_unit(verdict.threshold) for _, verdict in found]),
     ]
     names = {name: [verdict.id for case, verdict in found if case == name] for name, _ in found}
-    notes = [f"{join_words(ids)} in {name}." for name, ids in names.items() if len(names) > 1]
+    notes = [f"{', '.join(f'{mark} {judgement}' for judgement, mark in MARKS.items())}."]
+    notes += [f"{join_words(ids)} in {name}." for name, ids in names.items() if len(names) > 1]
     demanded = [verdict.id for _, verdict in found if verdict.demanded]
     notes += [f"Demanded: {join_words(demanded)}."] if demanded else []
     if found:
-        Table("Statements of the paper", columns, [" ".join(notes)] if notes else []).show(console)
+        Table("Statements of the paper", columns, [" ".join(notes)]).show(console)
 
 
 def decisive(runs: Mapping[str, Sequence[Verdict]]) -> list[tuple[str, Verdict]]:
