@@ -21,7 +21,6 @@ from protractile.analysis.plate_buckling import measure_plates, weakest_plates
 from protractile.analysis.rows import (
     BEAM,
     FARTHEST,
-    INITIAL,
     REST,
     Row,
     Rows,
@@ -168,7 +167,7 @@ def check_case(checked: CheckedCase, progress: Progress = ignore_progress) -> Ch
     else:
         hertz = [first_frequency(case, model) for model in static]
         lines += _static_lines(static, beam, hertz)
-        closed = context.rows.where(state=INITIAL, quantity="closed_play")
+        closed = context.rows.where(state=REST, quantity="closed_play")
         context.states.append(State(_BEAMS, None, static.with_play.tip, hertz[:1], closed))
     lines += cautions(context)
     lines.append(f"A run may take {run_cost(case, preview)}.")

@@ -34,7 +34,7 @@ class State(NamedTuple):
     critical_factor: float | None = None
     tip: float | None = None  #: static tip deflection in m
     frequencies: Sequence[float] = ()  #: natural frequencies in Hz, with closed contacts
-    closed: Sequence[Row] = ()  #: lateral plays that bulging walls close at t = 0
+    closed: Sequence[Row] = ()  #: largest lateral plays that bulging walls close
 
 
 @dataclass
@@ -64,7 +64,7 @@ class Context:
                 model.critical_factor,
                 model.static_tip if tip is None else tip.value,
                 [row.value for row in at_start.where(quantity="frequency")],
-                at_start.where(quantity="closed_play"),
+                of_model.where(state=REST, quantity="closed_play"),
             )
             states.append(state)
         known = results.trajectories, summary.models, summary.failures

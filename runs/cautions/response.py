@@ -233,15 +233,17 @@ def axial_stresses(context: Context) -> Iterator[str]:
 def bulges(context: Context) -> Iterator[str]:
     """Yield a caution for each model at rest whose bulging walls reduce lateral plays."""
     for state in context.states:
-        parts = [
-            f"{TO_MILLI * row.value:.2g} of {TO_MILLI * row.limit:g} mm at x = {row.x:g} m"
-            for row in state.closed
-            if row.limit is not None and row.value > BULGED * row.limit
-        ]
+        parts = []
+        for row in state.closed:
+            if row.limit is not None and row.value > BULGED * row.limit:
+                part = f"{TO_MILLI * row.value:.2g} of {TO_MILLI * row.limit:g} mm"
+                if row.value >= row.limit:
+                    part = f"all {TO_MILLI * row.limit:g} mm, so that pads on both sides press,"
+                parts.append(f"{part} at x = {row.x:g} m")
         if parts:
             yield (
-                f"{state.where}, static pad forces make walls bulge, which reduces the lateral "
-                f"play: by {', '.join(parts)}; beams with rigid walls do not show this"
+                f"{state.where}, static pad forces make walls bulge, which closes lateral play in "
+                f"corners: {', '.join(parts)}; beams with rigid walls do not show this"
             )
 
 
