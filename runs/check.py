@@ -131,7 +131,7 @@ def check_case(checked: CheckedCase, progress: Progress = ignore_progress) -> Ch
     case, boom, preview = checked.case, checked.boom, Preview(checked)
     static, context = statics(case, boom), Context(case, boom)
     beam = None if static is None else context.beam
-    context.rows = Rows()
+    context.rows, context.combined = Rows(), combination_rows(case, progress)
     if beam is not None:
         plates = extremes(measure_plates(beam), BEAM, REST)
         context.rows = Rows([*static_rows(beam, BEAM), *plates])
@@ -139,7 +139,7 @@ def check_case(checked: CheckedCase, progress: Progress = ignore_progress) -> Ch
         _beam_name(model): model.coarsen(boom).critical_factor(checked.model_boom(model))
         for model in (case.models if boom.compressed else ())
     }
-    combined = [*combination_tables(combination_rows(case, progress), case)]
+    combined = [*combination_tables(context.combined, case)]
     deciding = [
         static_table(case, boom if static is None else static.with_play.boom, context.rows),
         *combined[:1],

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Self
 
-from protractile.analysis.rows import INITIAL, REST, Row, Rows
+from protractile.analysis.rows import COMBINATION, INITIAL, REST, Row, Rows
 from protractile.analysis.states import States
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.geometry.boom import Boom
@@ -46,6 +46,7 @@ class Context:
     states: Sequence[State] = ()
     #: results of the beam of ``check``, empty without an equilibrium; None after a run
     rows: Rows | None = None
+    combined: Rows = field(default_factory=Rows)  #: results of load cases and combinations
     #: trajectories of a run, with the dimensions ``model`` and ``time``
     data: Mapping[Hashable, xr.DataArray] = field(default_factory=dict)
     models: Mapping[str, ModelSummary] = field(default_factory=dict)  #: models of a run
@@ -68,7 +69,8 @@ class Context:
             )
             states.append(state)
         known = results.trajectories, summary.models, summary.failures
-        return cls(results.case, results.boom, states, None, *known)
+        combined = [row for row in results.rows if row.state.startswith(COMBINATION)]
+        return cls(results.case, results.boom, states, None, Rows(combined), *known)
 
     @cached_property
     def drives(self) -> list[StickSlipEstimate]:

@@ -338,6 +338,11 @@ def test_table_page_and_files(tmp_path: Path) -> None:
     table = output.chart_table(chart)
     assert table.headings == ("radius\nm", "9 m", "14 m")
     assert {row[1][-1] for row in table.rows} <= {"L", "M"}
+    far = replace(chart.cells[1][0], tip=-1.4)
+    assert (
+        "At 14 m and a radius of 4 m the rated load deflects the tip by 10 % of the boom's length: "
+        "small displacements make it about 1.1 % too large, and moments about 0.65 %."
+    ) in output.chart_table(run.Chart(case, [chart.cells[0], [far]])).notes
 
 
 @pytest.mark.slow
