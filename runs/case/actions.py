@@ -229,10 +229,11 @@ def _where_payload_hangs(
 
 
 def head_of(case: Case) -> Head | None:
-    """Return the head with the place of the load; without a table head, that of the sheave."""
-    if case.head is not None or case.rope is None or case.rope.sheave is None:
+    """Return the head with the place of the load, that of the sheave unless the head gives one."""
+    head, sheave = case.head or Head(), None if case.rope is None else case.rope.sheave
+    if sheave is None or head.placed:
         return case.head
-    return Head(case.rope.sheave.ahead, case.rope.sheave.below)
+    return replace(head, ahead=sheave.ahead, below=sheave.below)
 
 
 def leads(case: Case, segments: Sequence[Segment]) -> Iterator[Lead]:
@@ -311,9 +312,9 @@ def head_moments(case: Case, segments: Sequence[Segment]) -> Iterator[Load]:
     """
     if (head := head_of(case)) is None:
         return
-    if case.hoist is not None and (head.ahead or head.below or head.beside or head.level):
+    if case.hoist is not None and head.placed:
         what = "the load of hoist hangs at the end of the boom; leave ahead, below and beside out"
-        raise BoomError("head" if case.head else "rope.sheave", what)
+        raise BoomError("head" if case.head and case.head.placed else "rope.sheave", what)
     if case.gravity is None and head.mass:
         raise BoomError("head.mass", "nothing weighs without the table gravity; give it")
     own = 0.0 if case.gravity is None else case.gravity.acceleration * head.mass

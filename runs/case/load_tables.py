@@ -287,7 +287,8 @@ class RopeTable(CaseTable):
 
     sheave: Sheave | None = None
     """the place { ahead, below } of the sheave at the head, where the lead begins, and the falls
-    without a table head; that of the table head, or the end of the axis, unless given"""
+    unless the table head gives a place of the load; that of the table head, or the end of the axis,
+    unless given"""
 
     @model_validator(mode="after")
     def _one_winch(self) -> Self:

@@ -300,6 +300,10 @@ def test_cylinder_by_its_drawing(tmp_path: Path) -> None:
          + table("[hoist]", mass=200.0, stiffness=1e6, hanging=True),
          "rope.sheave: the load of hoist hangs at the end of the boom; leave ahead, below and "
          "beside out"),
+        (table("[rope]", falls=2, sheave={"below": -0.3}) + table("[head]", mass=60.0)
+         + table("[hoist]", mass=200.0, stiffness=1e6, hanging=True),
+         "rope.sheave: the load of hoist hangs at the end of the boom; leave ahead, below and "
+         "beside out"),
         (table("[rope]", falls=2, sheave={"beside": 0.3}),
          "rope.sheave.beside: unknown key; known ones are ahead, below"),
         (table("[head]", below={"left": 0.1}),

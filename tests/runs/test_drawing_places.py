@@ -259,14 +259,15 @@ WINCHES = {
 }
 
 
-@pytest.mark.parametrize("head", ["", HEAD])
+@pytest.mark.parametrize("head", ["", HEAD, table("[head]", mass=60.0)], ids=["", "fork", "mass"])
 @pytest.mark.parametrize("place", [{}, {"below": -0.4}, {"ahead": 0.3, "below": {"top": -0.272}}])
 @pytest.mark.parametrize("winch", WINCHES)
 def test_rope_forces_turn_the_boom_about_its_foot(
     tmp_path: Path, winch: str, place: dict[str, object], head: str
 ) -> None:
     """Reference: analytic, moments about the foot of the lead at the sheave, 0.4 m above the axis
-    or at the head, and of the weight of the payload, which hangs there without a head."""
+    or at the head, and of the weight of the payload, which hangs there unless the head has a place
+    of its own. The head's own weight acts halfway."""
     keys, (x, z) = WINCHES[winch]
     texts = "", table("[rope]", falls=2, **keys, **{"sheave": place} if place else {})
 
@@ -280,11 +281,12 @@ def test_rope_forces_turn_the_boom_about_its_foot(
 
     sheave = 10.0 + float("ahead" in place) * 0.3, 0.4
     if not place:
-        sheave = (10.8, -0.5) if head else (10.0, 0.0)
+        sheave = (10.8, -0.5) if head == HEAD else (10.0, 0.0)
     weight, line = 150.0 * G, (x - sheave[0], z - sheave[1])
     along, up = (0.5 * weight * part / hypot(*line) for part in line)
     expected = sheave[0] * up - sheave[1] * along
-    if not head:
+    if head != HEAD:
+        weight += 0.5 * 60.0 * G * bool(head)
         # The boom is at 50 degrees: the weight has the parts g sin 50° along and g cos 50° across.
         expected += weight * (sheave[1] * ACROSS - (sheave[0] - 10.0) * ALONG)
     assert moment(texts[1]) - moment(texts[0]) == pytest.approx(expected, rel=1e-9)
