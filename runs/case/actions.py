@@ -27,6 +27,7 @@ from protractile.geometry.segment import SAME_PLACE
 from protractile.geometry.typography import choices
 from protractile.geometry.wind import wind_direction, wind_loads
 from protractile.runs.case.load_tables import (
+    Group,
     LoadTable,
     RopeTable,
     WindPressureTable,
@@ -214,10 +215,21 @@ def oblique_forces(case: Case, segments: Sequence[Segment]) -> Iterator[ObliqueF
 
 
 def wind_on_load(case: Case, table: WindPressureTable, segments: Sequence[Segment]) -> ObliqueForce:
-    """Return the force of the wind on the load at the tip."""
+    """Return the force of the wind on the load at the tip, 0 without a load."""
     force = table.dynamic_pressure * table.load_area * table.load_shape_factor
+    masses = [] if case.payload is None else [(case.payload.group, case.payload.mass)]
+    if case.hoist is None and not in_wind(case, masses):
+        force = 0.0
     unit = wind_direction(radians(table.direction), _luffing(case))
     return _where_payload_hangs(case, segments, force * unit, build_history("wind", table))
+
+
+def in_wind(case: Case, masses: Sequence[tuple[Group, float]]) -> bool:
+    """Return whether masses at the tip, each with its group, include a load for the wind.
+
+    Dead masses on a rope are hook and rope. Without a rope they are a cage.
+    """
+    return any(mass for group, mass in masses if case.rope is None or group != "dead")
 
 
 def _where_payload_hangs(

@@ -214,7 +214,8 @@ class WindPressureTable(HistoryTable):
     ] = ()
     """the shape factor (force coefficient) of all segments, or one for each segment"""
     load_area: Annotated[NotNegative, In("m^2")] = 0.0
-    """the area in m^2 of the load at the tip in the wind"""
+    """the area in m^2 of the load at the tip in the wind; it does not act without a mass at the tip
+    or, with a table rope, without one of another group than dead, which is that of hook and rope"""
     load_shape_factor: Annotated[Positive, In("1")] = 1.0
     """the shape factor of the load, 1 unless given, as for an area that has it already"""
 

@@ -234,6 +234,11 @@ def test_cells_without_a_governing_proof() -> None:
     assert heavy.capacity is None
     assert heavy.reason.startswith("cylinder force ")
     assert heavy.reason.endswith("% without payload")
+    windy = flexible("cylinder") | {
+        "wind": {"pressure": 1e3, "shape_factor": 1.0, "load_area": 90.0}
+    }
+    windy["combination"][0]["factors"]["wind"] = 1.0
+    assert {cell.reason for cell in cells(windy, 4.0e5)} == {"cylinder force with any payload"}
 
 
 def test_configurations() -> None:
