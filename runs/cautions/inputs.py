@@ -125,15 +125,10 @@ def table_ends(context: Context) -> Iterator[str]:
 
 
 def cylinders(context: Context) -> Iterator[str]:
-    """Yield cautions on cylinders that pull, hold a sliding segment, or are at an unusual place."""
+    """Yield cautions on cylinders that hold a sliding segment, or are at an unusual place."""
     boom = context.boom
     for number, cylinder in enumerate(boom.cylinders, start=1):
         segment = boom.segments[cylinder.segment]
-        if (height := cylinder.ground[1]) > -cylinder.depth:
-            yield (
-                f"cylinder[{number}].ground: a height of {height:g} m is above the lug, and the "
-                "cylinder would pull; usual is below, where heights are negative"
-            )
         if cylinder.depth < 0.0:
             yield (
                 f"cylinder[{number}].depth: {cylinder.depth:g} m puts the lug above the axis of "

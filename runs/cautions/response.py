@@ -14,7 +14,7 @@ from protractile.analysis.plate_buckling import weakest_plates
 from protractile.analysis.rows import COMBINATION, REST, Rows
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.geometry.axial import moving_force
-from protractile.geometry.typography import TO_MILLI, TO_PERCENT, milli, number, percent
+from protractile.geometry.typography import TO_MILLI, TO_PERCENT, amount, milli, number, percent
 from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.schema import Case
@@ -284,6 +284,22 @@ def utilisations(context: Context) -> Iterator[str]:
                 f"static utilisation under the loads at t = {row.time:.4g} s: {100.0 * used:.3g} % "
                 f"by {row.of.title} ({row.part}, x = {row.x:.4g} m): exceeds {row.of.limit}"
             )
+
+
+def pulling_cylinders(context: Context) -> Iterator[str]:
+    """Yield the largest force of each cylinder that pulls, at rest and in combinations."""
+    system = context.case.system
+    rows = Rows([*(context.rows or Rows()).where(state=REST), *context.combined])
+    forces = [row for row in rows.where(quantity="cylinder_force") if row.value < 0.0]
+    for part in dict.fromkeys(row.part for row in forces):
+        most = min((row for row in forces if row.part == part), key=lambda row: row.value)
+        name = most.state.removeprefix(COMBINATION)
+        where = "at rest" if most.state == REST else f"under the loads of {name!r}"
+        cylinder = context.boom.cylinders[int(part.partition(" ")[2] or 1) - 1]
+        if (area := cylinder.oil_area(pulls=True)) is not None:
+            where = f"on the ring of bore less rod, {system.text(area, 'm^2')}, {where}"
+        pull = amount(-most.value, "N")
+        yield Sentence(f"{part[0].upper()}{part[1:]} pulls with {pull} {where}.")
 
 
 def panels(context: Context) -> Iterator[str]:

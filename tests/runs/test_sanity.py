@@ -110,7 +110,6 @@ def cautions_of(folder: Path, text: str) -> list[str]:
          "joint[1].pads: pads of 16 mm left and 15 mm right and the play of 3 mm need 34 mm, and "
          "between 'base' and 'fly' are 31 mm, … "),
         (PLAY, f"{PLAY}normal_forces = [1e3, 1e3]\n", "joint[1].normal_forces: they have no … "),
-        ("[0.7, -1.1]", "[0.7, 1.1]", "cylinder[1].ground: a height of 1.1 m is above the lug, … "),
         ("angle = 45.0", "angle = 0.785",
          "gravity.angle: 0.785 degrees is nearly level; if it is in radians, give 44.98"),
         ("gravity = { angle = 45.0 }", "",
