@@ -174,8 +174,9 @@ def _static_contacts(states: States) -> Iterator[Measured]:
         deepest = np.array(penetrations).reshape(time.size, -1).max(axis=1, initial=0.0)
         yield _single("penetration", part, deepest, time, station.x, place)
         if station.direction == "y" and station.joint is not None:
-            closed, play = _closed_play(system, gaps, here), station.joint.lateral_play
-            yield _single("closed_play", part, closed, time, station.x, place, play or None)
+            closed, play = _closed_play(system, gaps, here)
+            limit = play if play > 0.0 else None
+            yield _single("closed_play", part, closed, time, station.x, place, limit=limit)
         pairs = [pair for pair in contacts if pair.station.index == station.index]
         loaded = loaded_pads(station, sides)
         if station.joint is not None and station.joint.pads and len(pairs) == here.size:
@@ -200,17 +201,29 @@ def _on_side(systems: list[GapSystem], side: int, gaps: Array, rows: Indices) ->
     )
 
 
-def _closed_play(system: GapSystem, gaps: Array, rows: Indices) -> Array:
-    """Return the play (num_states,) in m that bulging walls close.
+def _closed_play(system: GapSystem, gaps: Array, rows: Indices) -> tuple[Array, float]:
+    """Return the play (num_states,) in m that bulging walls close, and the play between pads.
 
-    It is the mean approach on the right less that on the left.
+    It is the approach on the right less that on the left, at the corner or point where most is
+    closed: a wall that bulges beside loaded pads bends inwards at its other edge.
     """
+    laws = system.laws
     right, left = (
-        [row for row in rows if np.isfinite(system.laws[row].onset(side))] for side in EACH_SIDE
+        [row for row in rows if np.isfinite(laws[row].onset(side))] for side in EACH_SIDE
     )
     if not (right and left):
-        return np.zeros(len(gaps))
-    return np.asarray(gaps[:, right].mean(axis=1) - gaps[:, left].mean(axis=1))
+        return np.zeros(len(gaps)), 0.0
+    onsets = np.array([[min(law.onset(side) for side in EACH_SIDE) for law in laws]])
+    # A corner may have other pads on the right than on the left.
+    corners = np.gcd(len(right), len(left))
+
+    def at_corners(values: Array, side: list[int]) -> Array:
+        parts = values[:, side].reshape(len(values), corners, -1)
+        return np.asarray(parts.mean(axis=2))
+
+    closed = at_corners(gaps, right) - at_corners(gaps, left)
+    play = at_corners(onsets, right) + at_corners(onsets, left)
+    return closed.max(axis=1), float(play.min())
 
 
 def _rotations(states: States) -> Iterator[Measured]:

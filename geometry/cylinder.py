@@ -102,7 +102,8 @@ class Cylinder:
     luffing angle gravity.angle of the case"""
     stiffness: Annotated[Positive, In("N/m")] | None = field(default=None, kw_only=True)
     """the axial stiffness in N/m, of two cylinders side by side their sum; unless given, that of
-    oil column and rod by bore, rod, closed and open"""
+    oil column and rod by bore, rod, closed and open: the column on the piston if it pushes, on
+    the ring around the rod if the loads at t = 0 make it pull"""
     dashpot: Annotated[NotNegative, In("N s/m")] = 0.0
     """the linear axial dashpot in N s/m; of two cylinders their sum"""
     spread: Annotated[NotNegative, In("m")] = 0.0
@@ -162,20 +163,26 @@ class Cylinder:
 
     @property
     def axial_stiffness(self) -> float:
-        """The axial stiffness in N/m: ``stiffness``, or that of oil column and rod in series.
+        """The axial stiffness in N/m: ``stiffness``, or that of oil and rod if it pushes."""
+        return self.oil_stiffness() if self.stiffness is None else self.stiffness
 
-        The oil column is as long as the extension, and the rod as the closed cylinder. Barrel and
-        hoses are rigid.
+    def oil_stiffness(self, pulls: bool = False) -> float:
+        """Return the stiffness in N/m of oil column and rod in series, if it pushes or pulls.
+
+        It needs ``bore``, ``rod`` and ``closed``. The column is on the pistons, as long as the
+        extension; of a cylinder that pulls it is on the rings around the rods, as long as the rest
+        of the stroke, without ``open`` up to twice ``closed``. The rod is as long as the closed
+        cylinder. Barrel and hoses are rigid.
         """
-        if self.stiffness is not None:
-            return self.stiffness
-        pistons = self.oil_area()
-        assert pistons is not None
+        area = self.oil_area(pulls)
+        assert area is not None
         assert self.rod is not None
         assert self.closed is not None
         rods = 0.25 * pi * self.rod**2 * self.count
-        column = max(self.length - self.closed, 0.0) / (self.oil_modulus * pistons)
-        return 1.0 / (column + self.closed / (_ROD_MODULUS * rods))
+        most = self.open or 2.0 * self.closed
+        column = most - self.length if pulls else self.length - self.closed
+        compliance = max(column, 0.0) / (self.oil_modulus * area)
+        return 1.0 / (compliance + self.closed / (_ROD_MODULUS * rods))
 
     @property
     def buckling_force(self) -> float | None:

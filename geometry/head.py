@@ -46,6 +46,11 @@ class Head(Sheave):
     """the load's place { front, below } in earth axes from the pin at ahead and below, for a cage
     that stays level at each luffing angle; at the pin unless given"""
 
+    @property
+    def placed(self) -> bool:
+        """True if it gives a place of the load other than the end of the axis."""
+        return bool(self.ahead or self.below or self.beside or self.level)
+
     def in_boom_axes(self, segment: Segment, angle: float) -> Head:
         """Return the head on the last segment with its load in the axes of the boom.
 

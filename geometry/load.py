@@ -75,6 +75,11 @@ class Load:
         """Return the resultant in N at the value 1 of the history, for a segment's length in m."""
         return self.magnitude * (length if self.x is None else 1.0)
 
+    def turn(self, ends: tuple[float, float], about: float) -> float:
+        """Return the moment in N·m about an x in m at the value 1, for a segment between ends."""
+        places = [*self.places.values()] or ends
+        return self.resultant(ends[1] - ends[0]) * (sum(places) / len(places) - about)
+
     def push(self, segment: LoadedSegment) -> Array:
         """Return the load vector (num_dofs,) at the value 1 of the history."""
         if self.x is not None:
@@ -110,6 +115,9 @@ class Moment(Load):
     def resultant(self, length: float) -> float:
         return 0.0
 
+    def turn(self, ends: tuple[float, float], about: float) -> float:
+        return self.magnitude
+
     def push(self, segment: LoadedSegment) -> Array:
         assert self.x is not None
         return self.magnitude * segment.moment(self.x, self.direction)
@@ -118,6 +126,9 @@ class Moment(Load):
 @part
 class Torque(Moment):
     """Torque in N·m about the axis at a point; the direction has no meaning."""
+
+    def turn(self, ends: tuple[float, float], about: float) -> float:
+        return 0.0
 
     def push(self, segment: LoadedSegment) -> Array:
         assert self.x is not None

@@ -21,7 +21,6 @@ from protractile.analysis.plate_buckling import measure_plates, weakest_plates
 from protractile.analysis.rows import (
     BEAM,
     FARTHEST,
-    INITIAL,
     REST,
     Row,
     Rows,
@@ -132,7 +131,7 @@ def check_case(checked: CheckedCase, progress: Progress = ignore_progress) -> Ch
     case, boom, preview = checked.case, checked.boom, Preview(checked)
     static, context = statics(case, boom), Context(case, boom)
     beam = None if static is None else context.beam
-    context.rows = Rows()
+    context.rows, context.combined = Rows(), combination_rows(case, progress)
     if beam is not None:
         plates = extremes(measure_plates(beam), BEAM, REST)
         context.rows = Rows([*static_rows(beam, BEAM), *plates])
@@ -140,7 +139,7 @@ def check_case(checked: CheckedCase, progress: Progress = ignore_progress) -> Ch
         _beam_name(model): model.coarsen(boom).critical_factor(checked.model_boom(model))
         for model in (case.models if boom.compressed else ())
     }
-    combined = [*combination_tables(combination_rows(case, progress), case)]
+    combined = [*combination_tables(context.combined, case)]
     deciding = [
         static_table(case, boom if static is None else static.with_play.boom, context.rows),
         *combined[:1],
@@ -168,7 +167,7 @@ def check_case(checked: CheckedCase, progress: Progress = ignore_progress) -> Ch
     else:
         hertz = [first_frequency(case, model) for model in static]
         lines += _static_lines(static, beam, hertz)
-        closed = context.rows.where(state=INITIAL, quantity="closed_play")
+        closed = context.rows.where(state=REST, quantity="closed_play")
         context.states.append(State(_BEAMS, None, static.with_play.tip, hertz[:1], closed))
     lines += cautions(context)
     lines.append(f"A run may take {run_cost(case, preview)}.")

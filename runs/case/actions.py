@@ -27,6 +27,7 @@ from protractile.geometry.segment import SAME_PLACE
 from protractile.geometry.typography import choices
 from protractile.geometry.wind import wind_direction, wind_loads
 from protractile.runs.case.load_tables import (
+    Group,
     LoadTable,
     RopeTable,
     WindPressureTable,
@@ -214,10 +215,21 @@ def oblique_forces(case: Case, segments: Sequence[Segment]) -> Iterator[ObliqueF
 
 
 def wind_on_load(case: Case, table: WindPressureTable, segments: Sequence[Segment]) -> ObliqueForce:
-    """Return the force of the wind on the load at the tip."""
+    """Return the force of the wind on the load at the tip, 0 without a load."""
     force = table.dynamic_pressure * table.load_area * table.load_shape_factor
+    masses = [] if case.payload is None else [(case.payload.group, case.payload.mass)]
+    if case.hoist is None and not in_wind(case, masses):
+        force = 0.0
     unit = wind_direction(radians(table.direction), _luffing(case))
     return _where_payload_hangs(case, segments, force * unit, build_history("wind", table))
+
+
+def in_wind(case: Case, masses: Sequence[tuple[Group, float]]) -> bool:
+    """Return whether masses at the tip, each with its group, include a load for the wind.
+
+    Dead masses on a rope are hook and rope. Without a rope they are a cage.
+    """
+    return any(mass for group, mass in masses if case.rope is None or group != "dead")
 
 
 def _where_payload_hangs(
@@ -229,10 +241,11 @@ def _where_payload_hangs(
 
 
 def head_of(case: Case) -> Head | None:
-    """Return the head with the place of the load; without a table head, that of the sheave."""
-    if case.head is not None or case.rope is None or case.rope.sheave is None:
+    """Return the head with the place of the load, that of the sheave unless the head gives one."""
+    head, sheave = case.head or Head(), None if case.rope is None else case.rope.sheave
+    if sheave is None or head.placed:
         return case.head
-    return Head(case.rope.sheave.ahead, case.rope.sheave.below)
+    return replace(head, ahead=sheave.ahead, below=sheave.below)
 
 
 def leads(case: Case, segments: Sequence[Segment]) -> Iterator[Lead]:
@@ -311,9 +324,9 @@ def head_moments(case: Case, segments: Sequence[Segment]) -> Iterator[Load]:
     """
     if (head := head_of(case)) is None:
         return
-    if case.hoist is not None and (head.ahead or head.below or head.beside or head.level):
+    if case.hoist is not None and head.placed:
         what = "the load of hoist hangs at the end of the boom; leave ahead, below and beside out"
-        raise BoomError("head" if case.head else "rope.sheave", what)
+        raise BoomError("head" if case.head and case.head.placed else "rope.sheave", what)
     if case.gravity is None and head.mass:
         raise BoomError("head.mass", "nothing weighs without the table gravity; give it")
     own = 0.0 if case.gravity is None else case.gravity.acceleration * head.mass

@@ -7,11 +7,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import radians
 
+import numpy as np
+
 from protractile.dynamics.energy import DRIVEN_ENERGIES
 from protractile.dynamics.excitation import InitialImpulse, ReleasedLoad
 from protractile.dynamics.stick_slip import ELASTIC_DRIVE_VARIABLES
 from protractile.dynamics.trajectory import DRIVE_VARIABLES, STATION_VARIABLES
-from protractile.geometry.axial import with_compression
+from protractile.geometry.axial import foot_thrust, with_compression
 from protractile.geometry.boom import Boom, BoomError, Joint, Segment
 from protractile.geometry.boom_checks import check_order
 from protractile.geometry.cylinder import Cylinder, EarthPoint
@@ -60,6 +62,7 @@ def build_boom(case: Case) -> Boom:
         ),
         tuple(actions.leads(case, segments)),
     )
+    boom = _with_pulling_cylinders(boom)
     check_contacts_at_rest(boom)
     motions.check_elastic_drives(case, boom)
     return boom
@@ -116,6 +119,36 @@ def _cylinders(case: Case, segments: Sequence[Segment]) -> tuple[Cylinder, ...]:
             luffed = cylinder.luffed(radians(case.luff.travel), foot)
             luffed.check(f"cylinders[{number}]", case.spatial)
     return cylinders
+
+
+def _with_pulling_cylinders(boom: Boom) -> Boom:
+    """Return the boom with the stiffness of its cylinders that pull under the loads at t = 0.
+
+    Moments about the foot pin decide, without the deflections.
+    """
+    cylinders = tuple(
+        replace(cylinder, stiffness=cylinder.oil_stiffness(pulls=True))
+        if cylinder.stiffness is None and _pulls(boom, cylinder)
+        else cylinder
+        for cylinder in boom.cylinders
+    )
+    return boom if cylinders == boom.cylinders else replace(boom, cylinders=cylinders)
+
+
+def _pulls(boom: Boom, cylinder: Cylinder) -> bool:
+    segment = boom.segments[cylinder.segment]
+    if (foot := segment.foot) is None:
+        return False
+    thrust = foot_thrust(boom.segments, boom.joints, cylinder.segment, 0.0, boom.axial_changes)
+    turn = float(thrust) * foot.depth
+    for each in boom.segments:
+        turn += each.load * each.length * (0.5 * sum(each.ends) - foot.x)
+    for load in boom.loads:
+        if load.direction == "z" and not isinstance(load.history, InitialImpulse):
+            released = isinstance(load.history, ReleasedLoad)
+            factor = 1.0 if released else float(load.history(np.zeros(1))[0])
+            turn += factor * load.turn(boom.segments[load.segment].ends, foot.x)
+    return turn * cylinder.arm(foot) > 0.0
 
 
 def _foot(segments: Sequence[Segment]) -> Support | None:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple, TypeVar, get_args
 
 from protractile.geometry.boom import BoomError
 from protractile.geometry.typography import choices
-from protractile.runs.case.actions import payload_weight
+from protractile.runs.case.actions import in_wind, payload_weight
 from protractile.runs.case.build import build_boom, check_names, hold_ground, telescoped_joints
 from protractile.runs.case.combination_tables import (
     CombinationTable,
@@ -114,17 +114,20 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
     loads = [_times(load, factors[load.group], load.amount) for load in combined.loads]
     axial = [_times(axial, factors[axial.group], "force") for axial in combined.axial]
     base = [_times(action, factors[action.group], action.amount) for action in combined.base]
-    masses = tip_masses(case, table)
+    masses = [(group, factors[group] * mass) for group, mass in tip_masses(case, table)]
+    loaded = in_wind(case, masses)
     if payload is not None:
         total = payload_weight(combined) / payload.mass
-        weighed = sum(factors[group] * mass for group, mass in masses) / payload.mass
-        payload = payload.model_copy(update={"gravity": total * weighed})
+        weighed = sum(mass for _, mass in masses) / payload.mass
+        group = "payload" if loaded else payload.group
+        payload = payload.model_copy(update={"gravity": total * weighed, "group": group})
     if gravity is not None:
         gravity = _times(gravity, dead, "acceleration")
     wind, rope = combined.wind, combined.rope
     if wind is not None:
         pressure = factors["wind"] * wind.dynamic_pressure
-        wind = wind.model_copy(update={"pressure": pressure, "speed": None})
+        area = wind.load_area if loaded else 0.0
+        wind = wind.model_copy(update={"pressure": pressure, "speed": None, "load_area": area})
     if rope is not None and rope.falls is None and case.hoist is not None:
         rope = rope.model_copy(update={"falls": case.hoist.falls})
     return combined.model_copy(

@@ -214,7 +214,8 @@ class WindPressureTable(HistoryTable):
     ] = ()
     """the shape factor (force coefficient) of all segments, or one for each segment"""
     load_area: Annotated[NotNegative, In("m^2")] = 0.0
-    """the area in m^2 of the load at the tip in the wind"""
+    """the area in m^2 of the load at the tip in the wind; it does not act without a mass at the tip
+    or, with a table rope, without one of another group than dead, which is that of hook and rope"""
     load_shape_factor: Annotated[Positive, In("1")] = 1.0
     """the shape factor of the load, 1 unless given, as for an area that has it already"""
 
@@ -287,7 +288,8 @@ class RopeTable(CaseTable):
 
     sheave: Sheave | None = None
     """the place { ahead, below } of the sheave at the head, where the lead begins, and the falls
-    without a table head; that of the table head, or the end of the axis, unless given"""
+    unless the table head gives a place of the load; that of the table head, or the end of the axis,
+    unless given"""
 
     @model_validator(mode="after")
     def _one_winch(self) -> Self:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Self
 
-from protractile.analysis.rows import INITIAL, REST, Row, Rows
+from protractile.analysis.rows import COMBINATION, INITIAL, REST, Row, Rows
 from protractile.analysis.states import States
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.geometry.boom import Boom
@@ -34,7 +34,7 @@ class State(NamedTuple):
     critical_factor: float | None = None
     tip: float | None = None  #: static tip deflection in m
     frequencies: Sequence[float] = ()  #: natural frequencies in Hz, with closed contacts
-    closed: Sequence[Row] = ()  #: lateral plays that bulging walls close at t = 0
+    closed: Sequence[Row] = ()  #: largest lateral plays that bulging walls close
 
 
 @dataclass
@@ -46,6 +46,7 @@ class Context:
     states: Sequence[State] = ()
     #: results of the beam of ``check``, empty without an equilibrium; None after a run
     rows: Rows | None = None
+    combined: Rows = field(default_factory=Rows)  #: results of load cases and combinations
     #: trajectories of a run, with the dimensions ``model`` and ``time``
     data: Mapping[Hashable, xr.DataArray] = field(default_factory=dict)
     models: Mapping[str, ModelSummary] = field(default_factory=dict)  #: models of a run
@@ -64,11 +65,12 @@ class Context:
                 model.critical_factor,
                 model.static_tip if tip is None else tip.value,
                 [row.value for row in at_start.where(quantity="frequency")],
-                at_start.where(quantity="closed_play"),
+                of_model.where(state=REST, quantity="closed_play"),
             )
             states.append(state)
         known = results.trajectories, summary.models, summary.failures
-        return cls(results.case, results.boom, states, None, *known)
+        combined = [row for row in results.rows if row.state.startswith(COMBINATION)]
+        return cls(results.case, results.boom, states, None, Rows(combined), *known)
 
     @cached_property
     def drives(self) -> list[StickSlipEstimate]:

@@ -10,8 +10,8 @@ import numpy as np
 
 from protractile.geometry.box import BoxSection
 from protractile.geometry.fit import room
-from protractile.geometry.joint import SIDES, SlidePad
-from protractile.geometry.section import Direction
+from protractile.geometry.joint import SIDES
+from protractile.geometry.segment import SAME_PLACE
 from protractile.geometry.typography import TO_MILLI
 from protractile.runs.case.actions import STANDARD_GRAVITY
 from protractile.runs.case.kinds.model import select_kind
@@ -125,15 +125,10 @@ def table_ends(context: Context) -> Iterator[str]:
 
 
 def cylinders(context: Context) -> Iterator[str]:
-    """Yield cautions on cylinders that pull, hold a sliding segment, or are at an unusual place."""
+    """Yield cautions on cylinders that hold a sliding segment, or are at an unusual place."""
     boom = context.boom
     for number, cylinder in enumerate(boom.cylinders, start=1):
         segment = boom.segments[cylinder.segment]
-        if (height := cylinder.ground[1]) > -cylinder.depth:
-            yield (
-                f"cylinder[{number}].ground: a height of {height:g} m is above the lug, and the "
-                "cylinder would pull; usual is below, where heights are negative"
-            )
         if cylinder.depth < 0.0:
             yield (
                 f"cylinder[{number}].depth: {cylinder.depth:g} m puts the lug above the axis of "
@@ -175,24 +170,31 @@ def nesting(context: Context) -> Iterator[str]:
 
 
 def thick_pads(context: Context) -> Iterator[str]:
-    """Yield a caution for each pad that is thicker than the gap between its segments."""
+    """Yield a caution for each joint whose pads on both sides and play need more than its gap."""
     boom = context.boom
     for number, joint in enumerate(boom.joints, start=1):
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
         if outer.section is None or inner.section is None:
             continue
-        height, width = room(joint, outer, inner)
-        gaps: dict[Direction, float] = {"z": height, "y": width}
-        pads = {} if joint.pad is None else {"pad": joint.pad}
-        pads |= {f"pads[{i}]": pad for i, pad in enumerate(joint.pads, start=1)}
-        for key, pad in pads.items():
-            for way in [SIDES[pad.side][0]] if isinstance(pad, SlidePad) else boom.directions:
-                if (thickness := pad.thickness or 0.0) > gaps[way]:
-                    yield (
-                        f"joint[{number}].{key}.thickness: a pad of {TO_MILLI * thickness:.4g} mm "
-                        f"is thicker than the gap of {TO_MILLI * gaps[way]:.4g} mm between "
-                        f"{outer.name!r} and {inner.name!r}, both sides together"
-                    )
+        gaps = zip(boom.directions, room(joint, outer, inner), strict=False)
+        for direction, gap in gaps:
+            thickest = {
+                name: max(pad.thickness or 0.0 for pad, *_ in joint.pads_of(way, side) if pad)
+                for name, (way, side) in SIDES.items()
+                if way == direction and joint.padded
+            }
+            play = (joint.play if direction == "z" else joint.lateral_play) or 0.0
+            need = sum(thickest.values()) + play
+            if any(thickest.values()) and need > gap + SAME_PLACE * outer.length:
+                pads = " and ".join(
+                    f"{TO_MILLI * thickness:.4g} mm {name}" for name, thickness in thickest.items()
+                )
+                yield (
+                    f"joint[{number}].{'pad.thickness' if joint.pad else 'pads'}: pads of {pads} "
+                    f"and the play of {TO_MILLI * play:.4g} mm need {TO_MILLI * need:.4g} mm, and "
+                    f"between {outer.name!r} and {inner.name!r} are {TO_MILLI * gap:.4g} mm, both "
+                    "sides together; give thinner pads, or check the sections"
+                )
 
 
 def compliant_contacts(context: Context) -> Iterator[str]:

@@ -116,9 +116,7 @@ def _constant_loads(boom: Boom) -> Iterator[tuple[float, float]]:
     for load in boom.loads:
         if load.direction == "z" and isinstance(load.history, Step | Ramp):
             segment = boom.segments[load.segment]
-            force = load.resultant(segment.length)
-            middle = np.mean([*load.places.values()] or [segment.start, segment.end])
-            yield force, force * (float(middle) - base)
+            yield load.resultant(segment.length), load.turn(segment.ends, base)
 
 
 def repeated_loads(context: Context) -> Iterator[str]:

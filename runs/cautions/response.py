@@ -11,15 +11,16 @@ import numpy as np
 
 from protractile.analysis.beams import beam_of
 from protractile.analysis.plate_buckling import weakest_plates
-from protractile.analysis.rows import REST, Rows
+from protractile.analysis.rows import COMBINATION, REST, Rows
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.geometry.axial import moving_force
-from protractile.geometry.typography import TO_MILLI, TO_PERCENT, milli, number, percent
+from protractile.geometry.typography import TO_MILLI, TO_PERCENT, amount, milli, number, percent
 from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.schema import Case
 from protractile.runs.cautions.context import Context, Sentence
 from protractile.runs.pipeline.beam_states import static_states
+from protractile.runs.pipeline.combinations import limit_in_combinations
 from protractile.runs.pipeline.hoisting_error import straight_path_error
 from protractile.runs.pipeline.pad_walls import largest_tip, remedies, rigid_wall_note
 from protractile.runs.pipeline.turning import fastest_turn, motion_laws, pendulum_frequency
@@ -141,34 +142,47 @@ def buckling(context: Context) -> Iterator[str]:
 
 def deflections(context: Context) -> Iterator[str]:
     """Yield errors of large deflections by small displacements, cautions if they are large."""
-    for where, what, tip in _deflections(context):
-        part = abs(tip) / context.boom.length
-        if not part > TOLD_DEFLECTION:
-            continue
-        sentence = (
-            f"{where} the tip {what} {tip:.3g} m, {100.0 * part:.2g} % of the boom's length: small "
-            f"displacements make it about {100.0 * TIP_ERROR * part**2:.2g} % too large, and "
-            f"moments about {100.0 * MOMENT_ERROR * part**2:.2g} %"
-        )
-        if part > LARGE_DEFLECTION:
-            yield f"{sentence}; {_advice(context, where)}"
-        else:
-            yield Sentence(f"{sentence[0].upper()}{sentence[1:]}, on the safe side.")
+    for where, what, tip, end in _deflections(context):
+        part = abs(tip) / (end - context.boom.segments[0].start)
+        if part > TOLD_DEFLECTION:
+            sentence = f"{where} the tip {what} {tip:.3g} m, {deflection_error(part)}"
+            if part > LARGE_DEFLECTION:
+                yield f"{sentence}; {_advice(context, where)}"
+            else:
+                yield Sentence(f"{sentence[0].upper()}{sentence[1:]}, on the safe side.")
 
 
-def _deflections(context: Context) -> Iterator[tuple[str, str, float]]:
-    """Yield the source, the verb, and the tip deflection in m, of each state and motion."""
+def deflection_error(part: float) -> str:
+    """Return a clause on the errors of a tip deflection, a fraction of the boom's length."""
+    return (
+        f"{100.0 * part:.2g} % of the boom's length: small displacements make it about "
+        f"{100.0 * TIP_ERROR * part**2:.2g} % too large, and moments about "
+        f"{100.0 * MOMENT_ERROR * part**2:.2g} %"
+    )
+
+
+def _deflections(context: Context) -> Iterator[tuple[str, str, float, float]]:
+    """Yield source, verb, tip deflection and x of the tip in m, of each state and motion.
+
+    Of load cases and combinations it is the one with the largest deflection for its length.
+    """
+    end = context.boom.tip
     for state in context.states:
         if state.tip is not None:
-            yield state.where, "rests at", state.tip
+            yield state.where, "rests at", state.tip, end
     for row in (context.rows or Rows()).where(state=REST, quantity="tip"):
         if row.time:
-            yield f"under the loads at t = {row.time:.4g} s", "rests at", row.value
+            yield f"under the loads at t = {row.time:.4g} s", "rests at", row.value, end
+    start, combined = context.boom.segments[0].start, context.combined.where(quantity="tip")
+    if combined:
+        worst = max(combined, key=lambda row: abs(row.value) / ((row.x or end) - start))
+        name = worst.state.removeprefix(COMBINATION)
+        yield f"under the loads of {name!r}", "is at", worst.value, worst.x or end
     if "tip" in context.data:
         tips = context.data["tip"]
         moves = np.abs(tips.values).max(axis=1).tolist()
         for name, move in zip(tips["model"].values, moves, strict=True):
-            yield f"in {name}", "moves by", move
+            yield f"in {name}", "moves by", move, end
 
 
 def _advice(context: Context, where: str) -> str:
@@ -233,15 +247,17 @@ def axial_stresses(context: Context) -> Iterator[str]:
 def bulges(context: Context) -> Iterator[str]:
     """Yield a caution for each model at rest whose bulging walls reduce lateral plays."""
     for state in context.states:
-        parts = [
-            f"{TO_MILLI * row.value:.2g} of {TO_MILLI * row.limit:g} mm at x = {row.x:g} m"
-            for row in state.closed
-            if row.limit is not None and row.value > BULGED * row.limit
-        ]
+        parts = []
+        for row in state.closed:
+            if row.limit is not None and row.value > BULGED * row.limit:
+                part = f"{TO_MILLI * row.value:.2g} of {TO_MILLI * row.limit:g} mm"
+                if row.value >= row.limit:
+                    part = f"all {TO_MILLI * row.limit:g} mm, so that pads on both sides press,"
+                parts.append(f"{part} at x = {row.x:g} m")
         if parts:
             yield (
-                f"{state.where}, static pad forces make walls bulge, which reduces the lateral "
-                f"play: by {', '.join(parts)}; beams with rigid walls do not show this"
+                f"{state.where}, static pad forces make walls bulge, which closes lateral play in "
+                f"corners: {', '.join(parts)}; beams with rigid walls do not show this"
             )
 
 
@@ -270,6 +286,22 @@ def utilisations(context: Context) -> Iterator[str]:
             )
 
 
+def pulling_cylinders(context: Context) -> Iterator[str]:
+    """Yield the largest force of each cylinder that pulls, at rest and in combinations."""
+    system = context.case.system
+    rows = Rows([*(context.rows or Rows()).where(state=REST), *context.combined])
+    forces = [row for row in rows.where(quantity="cylinder_force") if row.value < 0.0]
+    for part in dict.fromkeys(row.part for row in forces):
+        most = min((row for row in forces if row.part == part), key=lambda row: row.value)
+        name = most.state.removeprefix(COMBINATION)
+        where = "at rest" if most.state == REST else f"under the loads of {name!r}"
+        cylinder = context.boom.cylinders[int(part.partition(" ")[2] or 1) - 1]
+        if (area := cylinder.oil_area(pulls=True)) is not None:
+            where = f"on the ring of bore less rod, {system.text(area, 'm^2')}, {where}"
+        pull = amount(-most.value, "N")
+        yield Sentence(f"{part[0].upper()}{part[1:]} pulls with {pull} {where}.")
+
+
 def panels(context: Context) -> Iterator[str]:
     """Yield a caution for each wall that buckles under the loads at rest."""
     for row in weakest_plates(context.rows or Rows()):
@@ -296,15 +328,19 @@ def limits(context: Context) -> Iterator[str]:
             yield Sentence(f"Limit {limit}: a run decides.")
             continue
         largest, title = abs(row.value), limit.quantity.title
+        combined = limit_in_combinations(limit, context.combined, context.case)
         what = title if at_rest else f"static {title} (maximum load)"
         static = f"the {what} is {limit.format(largest)}"
         if not limit.is_met_by(largest):
             yield f"the limit {limit} is exceeded: {static}"
+        elif combined and not limit.is_met_by(combined[1]):
+            name, most = combined
+            yield f"the limit {limit} is exceeded under the loads of {name}: {limit.format(most)}"
         elif at_rest:
-            yield Sentence(
-                f"Limit {limit}: met in this case, {limit.format(largest)}; `protractile prove` "
-                "checks the combinations against it."
-            )
+            met = f"Limit {limit}: met in this case, {limit.format(largest)}"
+            if combined:
+                met += f", and in combinations that demand it, {limit.format(combined[1])} at most"
+            yield Sentence(f"{met}.")
         else:
             yield Sentence(f"Limit {limit}: {static}, and the motion adds to it; a run decides.")
 

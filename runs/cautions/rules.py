@@ -23,7 +23,8 @@ RULES: Sequence[Rule] = (
     response.walls, *OF_INPUTS, response.stick_slip, response.lag, response.failures,
     response.buckling, response.deflections, response.durations, response.turning,
     response.axial_stresses, response.bulges, response.straight_path, response.utilisations,
-    response.panels, response.limits, response.swings, response.accuracy, inputs.series,
+    response.pulling_cylinders, response.panels, response.limits, response.swings,
+    response.accuracy, inputs.series,
 )  # fmt: skip
 
 

@@ -171,7 +171,7 @@ class Search:
         """Return the largest payload in kg for which one proof holds, and what else limits it.
 
         Raises:
-            NoCapacityError: the proof does not hold without payload.
+            NoCapacityError: the proof does not hold without payload, or with any.
         """
         from scipy.optimize import brentq
 
@@ -208,6 +208,9 @@ class Search:
         if high not in failures:
             brentq(excess, low, high, xtol=_STEP * high, rtol=_STEP)
         capacity = max(payload for payload in tried if excess(payload) <= 0.0)
+        if not capacity:
+            # The wind meets any load.
+            raise NoCapacityError(f"{PROVED[followed[1]].title} with any payload")
         beyond = [payload for payload in tried if payload > capacity]
         return capacity, failures.get(min(beyond, default=0.0), "")
 

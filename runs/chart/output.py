@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from math import floor, log10
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,7 @@ from protractile.analysis.quantities import PROVED
 from protractile.analysis.rows import COMBINATION, Row
 from protractile.geometry.typography import NONE, fixed, join_words, number, percent
 from protractile.runs.case.user_files import check_not_working_folder
+from protractile.runs.cautions.response import TOLD_DEFLECTION, deflection_error
 from protractile.runs.chart.cells import (
     LARGEST,
     NO_EQUILIBRIUM,
@@ -77,7 +78,7 @@ def chart_table(chart: Chart) -> Table:
         what = f"Governing utilisations in % with {number(keys.payload)} kg"
     governing = ", ".join(f"{letter} {name}" for letter, name in letters.items())
     notes = [f"{what}, over {name} and boom length. Governing: {governing}.", *_reasons(chart)]
-    notes += _not_proved(chart)
+    notes += [*_large_deflection(chart), *_not_proved(chart)]
     return Table("Load chart", columns, notes, "chart")
 
 
@@ -99,6 +100,19 @@ def _reasons(chart: Chart) -> list[str]:
     if OUT_OF_REACH in places:
         places[OUT_OF_REACH] = ["where no other reason is given"]
     return [f"{NONE} {reason}: {', '.join(where)}." for reason, where in places.items()]
+
+
+def _large_deflection(chart: Chart) -> Iterator[str]:
+    """Yield a sentence on the largest deflection for its length, unless it is small."""
+    deflected = [cell for cells in chart.cells for cell in cells if cell.tip]
+    if deflected:
+        worst = max(deflected, key=lambda cell: abs(cell.tip or 0.0) / cell.length)
+        part = abs(worst.tip or 0.0) / worst.length
+        if part > TOLD_DEFLECTION:
+            yield (
+                f"At {number(worst.length)} m and a radius of {number(worst.radius)} m the rated "
+                f"load deflects the tip by {deflection_error(part)}."
+            )
 
 
 def _not_proved(chart: Chart) -> list[str]:

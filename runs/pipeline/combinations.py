@@ -26,6 +26,7 @@ from protractile.runs.pipeline.beam_states import (
     moving_states,
     static_states,
 )
+from protractile.runs.pipeline.quantities import Limit
 from protractile.runs.pipeline.statics import boom_with_play
 from protractile.runs.pipeline.tipping import outrigger_rows
 from protractile.runs.process.terminal import Progress, ignore_progress
@@ -81,3 +82,25 @@ def combination_rows(case: Case, progress: Progress = ignore_progress) -> Rows:
     if not (case.load_cases or case.combinations):
         return Rows()
     return Rows(row for state in combination_states(case, False, progress) for row in state.rows)
+
+
+def limit_in_combinations(limit: Limit, rows: Rows, case: Case) -> tuple[str, float] | None:
+    """Return the largest value in the combinations that demand a limit, and the combination.
+
+    These are the combinations with the proof of deflection. None without them, or for limits other
+    than that of the static tip deflection.
+    """
+    largest = limited_tips(rows, case).largest if limit.quantity.name == "tip_at_rest" else None
+    return largest and (f"{largest.state.removeprefix(COMBINATION)!r}", abs(largest.value))
+
+
+def limited_tips(rows: Rows, case: Case) -> Rows:
+    """Return the tip deflections of the combinations that demand the proof of deflection."""
+    if case.limits is None or case.limits.tip_at_rest is None:
+        return Rows()
+    demanding = [
+        COMBINATION + combined.name
+        for combined in combined_cases(case)
+        if "deflection" in combined.combination.proofs
+    ]
+    return rows.where(state=demanding, quantity="tip")

@@ -113,15 +113,23 @@ class Limit:
 
 @dataclass(frozen=True, slots=True)
 class LimitCheck:
-    """Limit, and the value of each model in SI units. The first model with a value decides."""
+    """Limit, and the values of models and of combinations in SI units."""
 
     limit: Limit
-    values: Mapping[str, float]
+    values: Mapping[str, float]  #: values of the models
+    #: largest value in the combinations that demand the limit, with the name; None without them
+    combined: tuple[str, float] | None = None
 
     @property
     def decisive(self) -> tuple[str, float] | None:
-        """The first model with a value, and the value; None if no model has one."""
-        return next(iter(self.values.items()), None)
+        """The first model with a value, and the value; None if no model has one.
+
+        If this is within the limit, but not the value of a combination, that is decisive.
+        """
+        first, combined = next(iter(self.values.items()), None), self.combined
+        if first and combined and self.limit.is_met_by(first[1]):
+            return first if self.limit.is_met_by(combined[1]) else combined
+        return first
 
     @property
     def holds(self) -> bool:

@@ -36,6 +36,7 @@ from protractile.runs.folder.files import (
     scratch_folder,
     write_atomically,
 )
+from protractile.runs.pipeline.combinations import limit_in_combinations
 from protractile.runs.pipeline.design_results import ModelDesignResults
 from protractile.runs.pipeline.model_quality import main_models, reference_of
 from protractile.runs.pipeline.proofs import Proofs
@@ -253,14 +254,13 @@ class Results:
         )
 
     def check_limits(self) -> Iterator[LimitCheck]:
-        """Yield the limits of the case with the values of the main models."""
+        """Yield the limits of the case with values of the main models and of combinations."""
         limits = case_limits(self.case.limits)
         quantities = {name: self.measure(name) for name in self.main_models if limits}
         for limit in limits:
             numbers = {name: quantity[limit.quantity.name] for name, quantity in quantities.items()}
-            yield LimitCheck(
-                limit, {name: value for name, value in numbers.items() if value is not None}
-            )
+            values = {name: value for name, value in numbers.items() if value is not None}
+            yield LimitCheck(limit, values, limit_in_combinations(limit, self.rows, self.case))
 
     def __repr__(self) -> str:
         return f"Results of {self.case.title!r}: {', '.join(self.summary.models)}"

@@ -103,7 +103,9 @@ def _forces(combined: CombinedCase, states: States) -> Iterator[CraneForce]:
     for group, hanging in masses:
         yield CraneForce(factors[group] * gravity * hanging, radius)
     acting = combined.case.gravity.model_copy(update={"acceleration": 0.0})
-    without = {**dict.fromkeys(("payload", "hoist")), "gravity": acting, "base": ()}
+    # The wind meets the payload without its weight.
+    payload = combined.case.payload and combined.case.payload.model_copy(update={"gravity": 0.0})
+    without = {"payload": payload, "hoist": None, "gravity": acting, "base": ()}
     others = combined.case.model_copy(update=without)
     # The moment of a force on the load about the end of the boom is among the loads.
     radius, above = hook_place(case.model_copy(update={"head": None}), boom, angle, tip)

@@ -13,6 +13,7 @@ from protractile.geometry.units import System
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.combinations import combined_cases
 from protractile.runs.case.schema import Case
+from protractile.runs.pipeline.combinations import limited_tips
 from protractile.runs.pipeline.statics import boom_with_play
 from protractile.runs.report.load_table import release_note
 from protractile.runs.report.tables import Amount, Cell, Column, Table
@@ -33,6 +34,9 @@ _NAMES: Mapping[str, str] = {
 }
 # Mark of governing values in a table.
 _GOVERNS = "*"
+
+# Mark of a tip deflection above its limit.
+_EXCEEDS = "✗"
 
 # Quantities of each column of a table, by its heading.
 _COLUMNS: Mapping[str, list[str]] = {
@@ -137,21 +141,23 @@ def combination_tables(rows: Rows, case: Case, shell: str = "") -> Iterator[Tabl
     if not shown:
         return
     of_names = [shown.where(state=COMBINATION + name) for name in names]
+    limit, limited = case.limits and case.limits.tip_at_rest, limited_tips(rows, case)
+    exceeding = Rows(row for row in limited if abs(row.value) > (limit or 0.0))
     columns = [Column("combination,\nload case", names)]
     for heading, quantities in _COLUMNS.items():
         values = [name.where(quantity=quantities).largest for name in of_names]
         most = max((abs(value.value) for value in values if value), default=0.0)
         if most:
-            cells = [_marked(value, most) if value else None for value in values]
+            cells = [_marked(value, most, exceeding) if value else None for value in values]
             columns.append(Column(heading, cells))
     notes = [f"{_GOVERNS} is the largest of its column."]
-    limited = [
-        combination.name for combination in case.combinations if "deflection" in combination.proofs
-    ]
-    if limited and case.limits is not None and (limit := case.limits.tip_at_rest) is not None:
-        text = amount(limit, "m")
+    if limit and limited:
+        which = dict.fromkeys(
+            row.state.removeprefix(COMBINATION).partition(", ")[0] for row in limited
+        )
         notes.append(
-            f"The limit {text} of the static tip deflection applies to {join_words(limited)} only."
+            f"The limit {amount(limit, 'm')} of the static tip deflection applies to "
+            f"{join_words([*which])} only{f'; {_EXCEEDS} exceeds it' if exceeding else ''}."
         )
     moving = [combination.name for combination in case.combinations if combination.motion]
     if moving:
@@ -169,8 +175,9 @@ def combination_tables(rows: Rows, case: Case, shell: str = "") -> Iterator[Tabl
         yield _envelope(shown, case.system)
 
 
-def _marked(row: Row, most: float) -> Amount:
+def _marked(row: Row, most: float, exceeding: Rows) -> Amount:
     mark = _GOVERNS if abs(row.value) == most else " " * len(_GOVERNS)
+    mark += f" {_EXCEEDS}" if row in exceeding else ""
     return Amount.of(row.value, row.of.unit, mark)
 
 

@@ -399,10 +399,12 @@ def limit_table(results: Results) -> Table | None:
         for name in results.main_models
     ]
     first = results.main_models[0]
-    notes = [
-        f"The tick refers to {first}; if {first} has no value, to the first model with one. "
-        "`protractile prove` checks the combinations against these limits."
-    ]
+    notes = [f"The tick refers to {first}; if {first} has no value, to the first model with one."]
+    if any(check.combined for check in checks):
+        combined = [check.combined and check.combined[1] for check in checks]
+        cells = [check.limit.format(most) for check, most in zip(checks, combined, strict=True)]
+        columns.append(Column("combinations", cells))
+        notes.append("It refers also to the combinations that demand the proof of deflection.")
     return Table("Limits of the case", columns, notes, "limits", ["✗"])
 
 
@@ -413,6 +415,6 @@ def limit_faults(results: Results) -> Iterator[str]:
             continue
         what = "no model has such a result"
         if check.decisive is not None:
-            model, value = check.decisive
-            what = f"{check.limit.format(value)} in {model}; the case demands {check.limit}"
+            name, value = check.decisive
+            what = f"{check.limit.format(value)} in {name}; the case demands {check.limit}"
         yield f"limits.{check.limit.quantity.name}: {what}"

@@ -10,9 +10,13 @@ from rich.console import Console
 
 from protractile.analysis.rows import INITIAL, MOTION, REST, Rows
 from protractile.geometry.typography import number, percent
+from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.schema import Case
+from protractile.runs.cautions.context import Context
+from protractile.runs.cautions.response import deflections
+from protractile.runs.cautions.rules import cautions
 from protractile.runs.pipeline.combinations import combination_states
 from protractile.runs.pipeline.combined_shells import shell_states
 from protractile.runs.pipeline.pad_walls import rigid_wall_note
@@ -240,6 +244,8 @@ def print_proofs(
         table.show(console)
     proof_table(proofs, case).show(console)
     failed = [row for row in proofs.rows if not holds(row)]
+    for line in cautions(Context(case, build_boom(case), combined=rows), [deflections]):
+        print_text(console, line)
     # The lines on stderr begin with the governing proof.
     print_text(console, f"{tally(proofs)}." if failed else governing_proof(proofs, case.system))
     for row in failed:

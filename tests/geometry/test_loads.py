@@ -186,8 +186,12 @@ def test_cylinder_data_give_stiffness_pressure_and_buckling() -> None:
     assert jack.axial_stiffness == pytest.approx(stiffness, rel=1e-12)
     assert jack.buckling_force == pytest.approx(buckling, rel=1e-12)
     assert jack.resistance() == pytest.approx(min(2.5e7 * area, buckling), rel=1e-12)
-    # The oil pulls at the ring about the rod, which does not buckle.
+    # The oil pulls at the ring about the rod, which does not buckle; its column is the rest of the
+    # stroke of 2.2 m, or up to twice the closed length.
     ring = area - rod
+    for pulling, column in ((jack, 0.2), (replace(jack, open=None), 1.0)):
+        compliance = column / (1.4e9 * ring) + 3.0 / (2.1e11 * rod)
+        assert pulling.oil_stiffness(pulls=True) == pytest.approx(1.0 / compliance, rel=1e-12)
     assert jack.resistance(pulls=True) == pytest.approx(2.5e7 * ring, rel=1e-12)
     assert replace(jack, capacity=1e5).resistance(pulls=True) == 1e5
     assert replace(jack, spread=0.6).axial_stiffness == pytest.approx(2.0 * stiffness, rel=1e-12)

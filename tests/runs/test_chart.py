@@ -234,6 +234,11 @@ def test_cells_without_a_governing_proof() -> None:
     assert heavy.capacity is None
     assert heavy.reason.startswith("cylinder force ")
     assert heavy.reason.endswith("% without payload")
+    windy = flexible("cylinder") | {
+        "wind": {"pressure": 1e3, "shape_factor": 1.0, "load_area": 90.0}
+    }
+    windy["combination"][0]["factors"]["wind"] = 1.0
+    assert {cell.reason for cell in cells(windy, 4.0e5)} == {"cylinder force with any payload"}
 
 
 def test_configurations() -> None:
@@ -338,6 +343,11 @@ def test_table_page_and_files(tmp_path: Path) -> None:
     table = output.chart_table(chart)
     assert table.headings == ("radius\nm", "9 m", "14 m")
     assert {row[1][-1] for row in table.rows} <= {"L", "M"}
+    far = replace(chart.cells[1][0], tip=-1.4)
+    assert (
+        "At 14 m and a radius of 4 m the rated load deflects the tip by 10 % of the boom's length: "
+        "small displacements make it about 1.1 % too large, and moments about 0.65 %."
+    ) in output.chart_table(run.Chart(case, [chart.cells[0], [far]])).notes
 
 
 @pytest.mark.slow

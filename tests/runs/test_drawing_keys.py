@@ -8,6 +8,7 @@ import pytest
 
 from protractile.analysis.plate_buckling import measure_plates, plate_stresses, reduced_stress
 from protractile.analysis.rows import Rows
+from protractile.geometry.cylinder import Cylinder
 from protractile.geometry.polygon import PolygonSection
 from protractile.geometry.section import SectionError
 from protractile.geometry.typography import amount
@@ -251,8 +252,37 @@ def test_cylinder_by_its_drawing(tmp_path: Path) -> None:
     row = next(row for row in rows if row.quantity == "cylinder_force")
     assert row.value < 0.0
     assert row.limit == pytest.approx(2.5e7 * 0.25 * pi * (0.14**2 - 0.1**2), rel=1e-12)
+    ring = f"on the ring of bore less rod, {0.25 * pi * (0.14**2 - 0.1**2):.4g} m²"
+    told = f"Cylinder pulls with {amount(-row.value, 'N')} {ring}, under the loads of 'A, people'."
+    assert told in printed_check(read_case(tmp_path, text + up + PEOPLE + FACTORS), 200)
     raised = text + table("[luff]", travel=35.0, time=20.0)
     assert refusal(tmp_path, raised).startswith("cylinder[1].open: 2.4 m, and from ground to lug ")
+
+
+def test_a_cylinder_is_as_stiff_as_the_oil_on_the_side_that_carries(tmp_path: Path) -> None:
+    """Reference: the sign of its force at rest on both sides of balance; stiffness by hand."""
+    data = {"bore": 0.14, "rod": 0.1, "closed": 1.5, "open": 2.4}
+    drawn = DRAWN.replace('kind = "hinged"', 'kind = "hinged", depth = 0.1')
+    drawn += table("[[cylinder]]", **CYLINDER, **data) + table("[head]", ahead=0.4, below=0.3)
+    drawn += table("[rope]", falls=2, winch=1.0) + table("[wind]", pressure=200.0, shape_factor=1.3)
+
+    def lifted(force: float) -> tuple[Cylinder, float]:
+        load = table("[[load]]", segment="fly", x="head", magnitude=force)
+        case = read_case(tmp_path, drawn + load)
+        boom = build_boom(case)
+        state = state_at_rest(case, boom_with_play(case, boom))
+        return boom.cylinders[0], cylinder_force(state, 1)
+
+    (_, weight), (_, less) = lifted(0.0), lifted(1e3)
+    balance = 1e3 * weight / (weight - less)
+    rod, bore = (0.25 * pi * data[name] ** 2 for name in ("rod", "bore"))
+    for part in (0.95, 1.05):
+        jack, force = lifted(part * balance)
+        pulls = part > 1.0
+        assert (force < 0.0) == pulls
+        column = (2.4 - jack.length) / (bore - rod) if pulls else (jack.length - 1.5) / bore
+        compliance = column / 1.4e9 + 1.5 / (2.1e11 * rod)
+        assert jack.axial_stiffness == pytest.approx(1.0 / compliance, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -297,6 +327,10 @@ def test_cylinder_by_its_drawing(tmp_path: Path) -> None:
         (table("[rope]", falls=2, ground=WINCH) + LUFF,
          "rope.ground: the rope's lead across the boom is that at t = 0; leave luff or hoist out"),
         (table("[rope]", falls=2, sheave={"below": -0.3})
+         + table("[hoist]", mass=200.0, stiffness=1e6, hanging=True),
+         "rope.sheave: the load of hoist hangs at the end of the boom; leave ahead, below and "
+         "beside out"),
+        (table("[rope]", falls=2, sheave={"below": -0.3}) + table("[head]", mass=60.0)
          + table("[hoist]", mass=200.0, stiffness=1e6, hanging=True),
          "rope.sheave: the load of hoist hangs at the end of the boom; leave ahead, below and "
          "beside out"),

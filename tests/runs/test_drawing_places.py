@@ -184,6 +184,42 @@ def test_the_wind_of_a_load_case_says_what_differs(
     assert changed.load_area == 1.6
 
 
+@pytest.mark.parametrize(
+    ("rope", "load", "factor", "blown"),
+    [
+        ("", {"payload": 230.0}, 1.0, True),
+        ("", {"payload": 0.0}, 1.0, True),  # on the cage
+        ("[rope]\nfalls = 2\n", {"payload": 230.0}, 1.0, True),
+        ("[rope]\nfalls = 2\n", {"payload": 0.0}, 1.0, False),  # the hook alone
+        ("[rope]\nfalls = 2\n", {"payload": 230.0}, 0.0, False),
+    ],
+)
+def test_wind_on_the_load_needs_a_load(
+    tmp_path: Path, rope: str, load: dict[str, float], factor: float, blown: bool
+) -> None:
+    """Reference: other input, the wind without the area of the load."""
+    chassis = {"mass": 6e3, "centre": 0.0, "front": 1.5, "rear": 1.5, "side": 1.5}
+    factors = {"dead": 1.0, "payload": factor, "wind": 1.2}
+    more = JACK + rope + table("[chassis]", **chassis)
+    more += table("[[load_case]]", name="storm", **load)
+    more += table("[[combination]]", name="C", factors=factors, proofs=["tipping"])
+    cases = [
+        read_case(tmp_path, DRAWN + table("[wind]", **WIND, load_area=area) + more)
+        for area in (3.0, 0.0)
+    ]
+    # Of the case itself there is only the cage, or the hook on the rope.
+    own, calm = (build_boom(case).loads for case in cases)
+    assert (own == calm) == bool(rope)
+    states = [combination_states(case)[0] for case in cases]
+    tips = [state.rows.where(quantity="tip")[0].value for state in states]
+    moments = [next(proofs_of(state, state.combined.of)).value for state in states]
+    if blown:
+        assert tips[0] < tips[1] - 1e-3
+        assert moments[0] > 1.01 * moments[1]
+    else:
+        assert (tips[0], moments[0]) == (tips[1], moments[1])
+
+
 def test_a_hand_force_tips_at_the_height_of_the_head(tmp_path: Path) -> None:
     """Reference: analytic, force times height above the ground, but for the deflection of 2 ‰; the
     moment about the end of the boom is 3 % of it.
@@ -259,14 +295,15 @@ WINCHES = {
 }
 
 
-@pytest.mark.parametrize("head", ["", HEAD])
+@pytest.mark.parametrize("head", ["", HEAD, table("[head]", mass=60.0)], ids=["", "fork", "mass"])
 @pytest.mark.parametrize("place", [{}, {"below": -0.4}, {"ahead": 0.3, "below": {"top": -0.272}}])
 @pytest.mark.parametrize("winch", WINCHES)
 def test_rope_forces_turn_the_boom_about_its_foot(
     tmp_path: Path, winch: str, place: dict[str, object], head: str
 ) -> None:
     """Reference: analytic, moments about the foot of the lead at the sheave, 0.4 m above the axis
-    or at the head, and of the weight of the payload, which hangs there without a head."""
+    or at the head, and of the weight of the payload, which hangs there unless the head has a place
+    of its own. The head's own weight acts halfway."""
     keys, (x, z) = WINCHES[winch]
     texts = "", table("[rope]", falls=2, **keys, **{"sheave": place} if place else {})
 
@@ -280,11 +317,12 @@ def test_rope_forces_turn_the_boom_about_its_foot(
 
     sheave = 10.0 + float("ahead" in place) * 0.3, 0.4
     if not place:
-        sheave = (10.8, -0.5) if head else (10.0, 0.0)
+        sheave = (10.8, -0.5) if head == HEAD else (10.0, 0.0)
     weight, line = 150.0 * G, (x - sheave[0], z - sheave[1])
     along, up = (0.5 * weight * part / hypot(*line) for part in line)
     expected = sheave[0] * up - sheave[1] * along
-    if not head:
+    if head != HEAD:
+        weight += 0.5 * 60.0 * G * bool(head)
         # The boom is at 50 degrees: the weight has the parts g sin 50° along and g cos 50° across.
         expected += weight * (sheave[1] * ACROSS - (sheave[0] - 10.0) * ALONG)
     assert moment(texts[1]) - moment(texts[0]) == pytest.approx(expected, rel=1e-9)

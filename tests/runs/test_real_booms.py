@@ -2,6 +2,7 @@
 """Static states of shipped booms, and cautions: values out of usual ranges, walls that bend."""
 
 import re
+from dataclasses import replace
 from math import cos, radians
 from pathlib import Path
 
@@ -327,14 +328,35 @@ load = [{{ segment = "arm", x = "head", magnitude = -2e5 }}]
 
 
 def test_check_names_plays_closed_by_walls() -> None:
-    """Reference: other code, the static shell of the arm with edges of 0.2 m."""
+    """Reference: other code, corners of the static shell of the arm at t = 0."""
     checked = reading.load_checked(str(CASES / "inspection-arm.toml"))
     boom = boom_with_play(checked.case, checked.boom)
     rows = Rows(static_rows(static_states(checked.case, boom), "beam"))
     closed = rows.where(state=INITIAL, quantity="closed_play")
     assert [row.value for row in closed] == pytest.approx(
-        [1.1985e-3, 1.8414e-3, 0.8242e-3, 1.3873e-3], rel=0.02
+        [1.9203e-3, 2.8462e-3, 1.2405e-3, 2.0487e-3], rel=0.02
     )
     state = State("in the beam estimate", closed=closed)
     (caution,) = bulges(Context(checked.case, boom, [state]))
-    assert "1.2 of 4 mm at x = 3.5 m, 1.8 of 4 mm at x = 4.5 m" in caution
+    assert "1.9 of 4 mm at x = 3.5 m, 2.8 of 4 mm at x = 4.5 m" in caution
+
+
+def test_walls_that_close_a_play_press_pads_on_both_sides() -> None:
+    """Reference: by hand; across a symmetric boom a pad on each side is pressed alike."""
+    case = shipped("inspection-arm")
+    assert case.payload is not None
+    joints = tuple(replace(joint, lateral_play=0.001) for joint in case.joints)
+    for factor in (1.0, 10.0):
+        payload = case.payload.model_copy(update={"mass": factor * case.payload.mass})
+        changed = case.model_copy(update={"wind": None, "joints": joints, "payload": payload})
+        boom = boom_with_play(changed, build_boom(changed))
+        rows = Rows(static_rows(static_states(changed, boom), "beam")).where(state=REST)
+        closed = rows.where(quantity="closed_play")
+        pressed = [
+            row.value for row in rows.where(quantity="penetration") if "lateral" in row.place
+        ]
+        assert [row.value for row in closed] == pytest.approx(
+            [0.001 + 2.0 * depth for depth in pressed], rel=1e-9
+        )
+        (caution,) = bulges(Context(changed, boom, [State("in the beam estimate", closed=closed)]))
+        assert caution.count("all 1 mm, so that pads on both sides press, at x = ") == 4

@@ -40,11 +40,15 @@ cylinder = [{{ segment = "base", x = 2.4, depth = 0.25, ground = [0.7, -1.1], st
 {elements("beam", theory="euler-bernoulli")}
 """
 PLAY = "play = 0.003\npad = { length = 0.12, width = 0.05, thickness = 0.012 }\n"
-SMALL = {"length": 0.01, "width": 0.004, "thickness": 0.0006}
+SMALL = {"length": 0.01, "width": 0.004, "thickness": 0.0005}
 SHIMMED = """play = 0.003
 pads = [{ side = "above", length = 0.12, width = 0.05, thickness = 0.012 },
         { side = "below", length = 0.12, width = 0.05, thickness = 0.012, shim = 0.5 }]
 """
+BESIDE = "play = 0.003\nlateral_play = 0.003\n" + "".join(
+    table("[[joint.pads]]", side=side, length=0.12, width=0.05, thickness=thickness)
+    for side, thickness in {"above": 0.012, "below": 0.012, "left": 0.016, "right": 0.015}.items()
+)
 SHELL = table("[[model]]", name="shell", kind="shell", mesh_size=0.05)
 LOAD = '{ segment = "fly", x = "head", magnitude = -1595.0, ramp = 0.1 }'
 
@@ -97,10 +101,15 @@ def cautions_of(folder: Path, text: str) -> list[str]:
     ("old", "new", "line"),
     [
         ("thickness = 0.012", "thickness = 0.2",
-         "joint[1].pad.thickness: … in cm, give 0.002 m\njoint[1].pad.thickness: a pad of 200 mm "
-         "is thicker than the gap of 33 mm between 'base' and 'fly', … "),
+         "joint[1].pad.thickness: … in cm, give 0.002 m\njoint[1].pad.thickness: pads of 200 mm "
+         "above and 200 mm below and the play of 3 mm need 403 mm, and between … "),
+        ("thickness = 0.012", "thickness = 0.016",
+         "joint[1].pad.thickness: pads of 16 mm above and 16 mm below and the play of 3 mm need 35 "
+         "mm, and between 'base' and 'fly' are 33 mm, both sides together; … "),
+        (PLAY, BESIDE,
+         "joint[1].pads: pads of 16 mm left and 15 mm right and the play of 3 mm need 34 mm, and "
+         "between 'base' and 'fly' are 31 mm, … "),
         (PLAY, f"{PLAY}normal_forces = [1e3, 1e3]\n", "joint[1].normal_forces: they have no … "),
-        ("[0.7, -1.1]", "[0.7, 1.1]", "cylinder[1].ground: a height of 1.1 m is above the lug, … "),
         ("angle = 45.0", "angle = 0.785",
          "gravity.angle: 0.785 degrees is nearly level; if it is in radians, give 44.98"),
         ("gravity = { angle = 45.0 }", "",
@@ -133,7 +142,8 @@ def cautions_of(folder: Path, text: str) -> list[str]:
         ("supports = [{ x = 0.0", "supports = [{ x = 3.0", "cylinder[1].x: the foot at x = 3 m … "),
         ("depth = 0.25", "depth = -0.25", "cylinder[1].depth: -0.25 m puts the lug above the … "),
         ('state = "equilibrium"', 'state = "rest"', "start.state: the boom starts straight and … "),
-        ("play = 0.003", "play = 0.03", "joint[1].play: … 0.018 m; if it is in cm, give 0.0003 m"),
+        ("play = 0.003", "play = 0.03", "joint[1].play: … 0.018 m; if it is in cm, give 0.0003 m\n"
+         "joint[1].pad.thickness: pads … "),
         ("payload", "axial = [{ force = -100.0 }]\npayload", "axial[1].force: -100 N pulls the … "),
         ("payload", "axial = [{ force = 1.0 }]\npayload", "axial[1].force: 1 N is less than … "),
         ("payload", "axial = [{ force = 2080.0 }]\npayload",
@@ -197,7 +207,7 @@ gravity = {{ angle = 10.0 }}
 payload = {{ mass = 0.2 }}
 {table("[material]", youngs_modulus=7e10, poissons_ratio=0.33, density=2700.0, yield_strength=2e8)}
 {box("outer", (0.0, 0.6), (0.020, 0.015, 0.0012, 0.001), CLAMPED)}
-{box("inner", (0.5, 1.0), (0.017, 0.0125, 0.001, 0.001))}
+{box("inner", (0.5, 1.0), (0.0165, 0.0125, 0.001, 0.001))}
 {table("[[joint]]", outer="outer", inner="inner", stations=[0.5, 0.6], play=0.0002, pad=SMALL)}
 {elements("beam", element_length=0.05)}
 """

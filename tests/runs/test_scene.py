@@ -222,7 +222,7 @@ def test_sections_are_as_large_as_the_case_says() -> None:
     unknown = replace(arm, joints=(replace(first, pad=replace(first.pad, thickness=None)), second))
     # The left upper pads of the second segment: lowest (y, z), width and height in m.
     for boom, pads in (
-        (arm, [(-0.105, 0.149, 0.05, 0.025), (-0.1335, 0.095, 0.025, 0.05)]),
+        (arm, [(-0.105, 0.149, 0.05, 0.0125), (-0.121, 0.095, 0.0125, 0.05)]),
         (unknown, [(-0.105, 0.149, 0.05, 0.016)]),
     ):
         sheet = drawn("inspection-arm", boom)
