@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
+from scipy.integrate import quad, quad_vec
 
 from protractile.beam_model.boom_modes import critical_factor
 from protractile.beam_model.component import Component, SegmentModel
@@ -26,9 +26,9 @@ from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.excitation import Step
 from protractile.geometry.arrays import Array
 from protractile.geometry.axial import with_compression
-from protractile.geometry.boom import Boom, BoomError, PointMass, Segment, Stop, Support
+from protractile.geometry.boom import Boom, BoomError, Diaphragm, PointMass, Segment, Stop, Support
 from protractile.geometry.box import BoxSection
-from protractile.geometry.load import Load
+from protractile.geometry.load import AngularAcceleration, Load
 from protractile.geometry.observation import Observation
 from protractile.runs.case.kinds.finite_element import BeamElements
 from studies import taper
@@ -328,28 +328,35 @@ def local(x: float) -> BoxSection:
 
 
 @pytest.mark.parametrize("added", [0.0, 40.0])
-def test_mass_equals_the_mass_of_the_plates(added: float) -> None:
-    """Reference: by hand, ∫ A dx = 8 (A_0 + 4 A_m + A_1)/6 and its centroid, in all models; hoses
-    have theirs at 4 m."""
-    sections = [ROOT, BoxSection(0.55, 0.425, 0.015, 0.01), HEAD]
-    areas = [section.area for section in sections]
-    mass = 7850.0 * 8.0 * (areas[0] + 4.0 * areas[1] + areas[2]) / 6.0
-    middle = 8.0 * (2.0 * areas[1] + areas[2]) / (areas[0] + 4.0 * areas[1] + areas[2])
-    moment = mass * middle + 8.0 * added * 4.0
-    segment = arm(Support(0.0, stiffness=1e6), Support(8.0, stiffness=1e6), added=added)
-    assert segment.mass_moment == pytest.approx(moment, rel=1e-12)
+def test_inertia_loads_are_those_of_the_plates(added: float) -> None:
+    """Reference: analytic, ∫ ρ A x dx and ∫ ρ (A x² + J) dx of walls, a diaphragm at 6 m and
+    hoses, in all models. On springs at both ends, that of the tip carries an eighth.
+    """
+    plate = 7850.0 * 0.03 * local(6.0).enclosed_area
+    held = arm(Support(0.0, stiffness=1e6), Support(8.0, stiffness=1e6), added=added)
+    segment = replace(held, diaphragms=(Diaphragm(6.0, 0.03),))
     felt = Load(0, "z", segment.mass_per_length, None, Step(), inertial=True)
-    boom = Boom((segment,), (), (felt,))
-    for models in (
-        default_elements(boom, "timoshenko"),
-        kantorovich_segments(boom, [10], "complete", rotary_inertia=True),
-        [rigid_segment(segment)],
-    ):
-        system = gap_system(boom, models)
-        resting = static_response(system, system.excitations[0].load)
-        # 1 m/s² on springs of 1e6 N/m: the tip's carries m g x_m/8.
-        tip = system.observers["tip"].row @ resting
-        assert tip == pytest.approx(1e-6 * moment / 8.0, rel=1e-5)
+    turned = AngularAcceleration(0, "z", 1.0, None, Step())
+
+    def per_length(x: float) -> Array:
+        walls = local(x)
+        return 7850.0 * np.array([walls.area * x, walls.area * x**2 + walls.second_moment_of_area])
+
+    moments = quad_vec(per_length, 0.0, 8.0)[0] + plate * np.array([6.0, 36.0])
+    moments += added * np.array([8.0**2 / 2.0, 8.0**3 / 3.0])
+    assert segment.mass_moment == pytest.approx(moments[0], rel=1e-12)
+    for load, moment in zip((felt, turned), moments, strict=True):
+        boom = Boom((segment,), (), (load,))
+        for models in (
+            finite_element_segments(boom, LENGTH, "timoshenko", rotary_inertia=True),
+            kantorovich_segments(boom, [10], "complete", rotary_inertia=True),
+            [rigid_segment(segment)],
+        ):
+            system = gap_system(boom, models)
+            resting = static_response(system, system.excitations[0].load)
+            # 1 m/s² or 1 rad/s² on a spring of 1e6 N/m.
+            tip = system.observers["tip"].row @ resting
+            assert tip == pytest.approx(1e-6 * moment / 8.0, rel=1e-5)
 
 
 @pytest.mark.parametrize("added", [0.0, 40.0])
@@ -366,12 +373,18 @@ def test_axial_weights_follow_the_taper(added: float) -> None:
 def test_twist_follows_the_local_constant() -> None:
     """Reference: analytic, ∫ dx/(G J_t) under 1 N m at the free end, in series and elements."""
     soft, _ = quad(lambda x: 1.0 / (STEEL.shear_modulus * local(x).torsion_constant), 0.0, 8.0)
+    swinging, _ = quad(
+        lambda x: 7850.0 * local(x).polar_second_moment_of_area * (x / 8.0) ** 2, 0.0, 8.0
+    )
     boom = Boom((arm(),), ())
     for models in (
-        default_elements(boom, "timoshenko"),
+        finite_element_segments(boom, 0.1, "timoshenko", rotary_inertia=True),
         kantorovich_segments(boom, [12], "complete", rotary_inertia=True),
     ):
         twist = models[0].components["twist"]
         row = twist.at(8.0)
-        # A linear element has the stiffness of its middle: 1e-4 of the whole.
         assert row @ np.linalg.solve(twist.stiffness, row) == pytest.approx(soft, rel=1e-5)
+        # Of a twist from 0 to 1 along the arm.
+        x = np.linspace(0.0, 8.0, 81)
+        moved = np.linalg.pinv(np.array([twist.at(place) for place in x])) @ (x / 8.0)
+        assert moved @ twist.mass @ moved == pytest.approx(swinging, rel=2e-4)

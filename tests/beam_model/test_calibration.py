@@ -119,9 +119,13 @@ def test_a_beam_finds_its_own_stiffness(supports: tuple[Support, ...]) -> None:
     assert found.shear == pytest.approx(true.shear_stiffnesses, rel=5e-3)
     torsion = STEEL.shear_modulus * turned.torsion_constant
     assert found.torsion == pytest.approx(torsion, rel=2e-4)
-    taken = with_stiffness(segment, found)
+    bare = replace(lateral, rotary_inertia=0.0, polar_inertia=0.0)
+    taken = with_stiffness(replace(segment, rotary_inertia=0.0, lateral=bare), found)
     assert taken.bending_stiffness == pytest.approx(found.bending[0], rel=1e-12)
     assert taken.turned().shear_stiffness == pytest.approx(found.shear[1], rel=1e-12)
+    assert taken.rotary_inertia == segment.rotary_inertia
+    assert taken.lateral.rotary_inertia == lateral.rotary_inertia
+    assert taken.lateral.polar_inertia == lateral.polar_inertia
 
 
 def test_springs_add_the_compliance_of_the_fine_model() -> None:
@@ -191,6 +195,11 @@ def test_stiffeners_and_ends_of_tubes(monkeypatch: pytest.MonkeyPatch) -> None:
     assert 1.2 < plain / soft(pad(1.0, 1.1)) < 4.0
     flush = [soft(pad(LENGTH - 0.1, end)) for end in (LENGTH, np.nextafter(LENGTH, 0.0))]
     assert flush[1] == pytest.approx(flush[0], rel=1e-9)
+    # A taper is there what a tube of its section is.
+    tail, head, middle = (BoxSection(size, 0.5 * size, WALL, WALL) for size in (0.4, 0.2, 0.35))
+    assert soft(pad(0.45, 0.55), section=tail, head_section=head) == pytest.approx(
+        soft(pad(0.45, 0.55), section=middle), rel=1e-12
+    )
     near, far = 0.5 * SIDE - 0.007, 0.5 * SIDE - 0.057
     left, right = (
         PressedArea(0.0, 0.1, "z", 1, (tuple(sorted((side * near, side * far))),))

@@ -7,15 +7,17 @@ from math import cos, hypot, pi, radians, sin
 import numpy as np
 import pytest
 
-from protractile.dynamics.excitation import Step
+from protractile.dynamics.excitation import PiecewiseLinear, Step
 from protractile.geometry.axial import (
     AxialChange,
     Thrust,
+    axial_force,
     with_compression,
 )
 from protractile.geometry.boom import BoomError, Collar, Diaphragm, Joint, PointMass, Segment
 from protractile.geometry.cylinder import Cylinder, EarthPoint
 from protractile.geometry.head import Head
+from protractile.geometry.joint import Carrier, Drive
 from protractile.geometry.load import Load, Moment, PartialLoad, Torque
 from protractile.geometry.support import Support
 from protractile.geometry.wind import wind_direction, wind_loads
@@ -84,6 +86,27 @@ def test_a_thrust_goes_by_the_lock_into_the_next_segment() -> None:
     assert at(jib, 13.0, 19.0) == [700.0, 700.0]
     assert at(fly, 7.0, 12.5, 13.5) == pytest.approx([600.0, -100.0, 0.0], abs=1e-9)
     assert at(arm, 5.0, 6.5, 7.5) == pytest.approx([610.0, 10.0, 0.0], abs=1e-9)
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("carrier", "locked"), [("inner", None), ("inner", 7.0), ("outer", 6.0), ("outer", 5.0)]
+)
+def test_axial_forces_on_the_way_are_those_of_the_boom_there(
+    carrier: Carrier, locked: float | None, way: float
+) -> None:
+    """Reference: other code path, the boom built at this extension or retraction."""
+    drive = Drive(PiecewiseLinear([0.0, 1.0], [0.0, way]), ("inner", "outer"), 0.0, carrier)
+    joint = replace(JOINT, drive=drive, locked_at=locked)
+    own = with_compression(segments(), [joint], [Thrust(1, 14.0, 1000.0)], gravity=5.0)
+    along = locked + way if locked is not None and carrier == "inner" else locked
+    lock, thrust = replace(JOINT, locked_at=along), Thrust(1, 14.0 + way, 1000.0)
+    there = with_compression(segments(6.0 + way), [lock], [thrust], gravity=5.0)
+    for number, moved in ((0, 0.0), (1, way)):
+        x = np.linspace(*own[number].ends, 97)[1:-1] + 1e-3
+        found = axial_force(own, [joint], number, x, np.array([0.0, 1.0]))
+        assert found[0] == pytest.approx(own[number].compression(x), rel=1e-12)
+        assert found[1] == pytest.approx(there[number].compression(x + moved), abs=1e-6)
 
 
 def test_axial_forces_and_masses_soften_a_mode() -> None:

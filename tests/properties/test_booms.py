@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 
 import protractile as pt
 from protractile.analysis.rows import Row, Rows
+from protractile.dynamics.equilibrium import equilibrium
 from protractile.geometry.axial import with_compression
 from tests.booms import MODELS, rows_at_rest
 
@@ -294,6 +295,42 @@ def test_a_load_in_two_parts_is_the_load(kind: str, n: Numbers, part: float) -> 
         for each in (at_rest(kind, boom), split)
     )
     agree(rows, others, rel=1e-3)
+
+
+@EACH
+@given(n=telescopes(), factor=st.floats(-3.0, -0.1))
+@FEW
+def test_without_play_results_are_in_proportion_to_loads(
+    kind: str, n: Numbers, factor: float
+) -> None:
+    """All but forces of a pin, of two components, and axial forces with their stresses."""
+    boom = boom_of(replace(n, uniform=0.0)).bonded
+    loads = [replace(load, magnitude=factor * load.magnitude) for load in boom.loads]
+    others = "foot_reaction", "stress", "axial_reaction", "frequency"
+    rows, scaled = (
+        Rows(row for row in at_rest(kind, each) if row.quantity not in others)
+        for each in (boom, replace(boom, loads=loads))
+    )
+    agree(rows, scaled, lambda row: (row.key, factor * row.value))
+
+
+@EACH
+@given(n=telescopes(), x=st.tuples(st.floats(0.1, 1.0), st.floats(0.1, 1.0)))
+@FEW
+def test_deflections_are_reciprocal(kind: str, n: Numbers, x: tuple[float, float]) -> None:
+    """Reference: analytic, Betti (1872), for a force on the arm and one on the fly."""
+    boom = boom_of(replace(n, uniform=0.0)).bonded
+    at = [s.start + part * s.length for s, part in zip(boom.segments, x, strict=True)]
+    seen = [pt.Observation(str(k), k, place) for k, place in enumerate(at)]
+    moved = []
+    for k in (0, 1):
+        load = pt.Load(k, "z", 1e3, x=at[k], history=pt.Step())
+        model = MODELS[kind](replace(boom, loads=(load,), observations=seen), 1.0)
+        system = model.system().gather_loads()
+        rest = equilibrium(system, system.load)
+        moved.append([system.observers[one.name].row @ rest for one in seen])
+    assert moved[0][1] == pytest.approx(moved[1][0], rel=1e-7, abs=1e-12)
+    assert min(moved[0][0], moved[1][1]) > 0.0
 
 
 @EACH

@@ -176,16 +176,31 @@ def flexible(*proofs: str) -> dict[str, Any]:
     return tables
 
 
-def test_the_tip_hangs_at_the_radius() -> None:
-    """Reference: analytic, rotation of the straight boom and its deflection."""
-    for cell in cells(flexible(), 9.0e5):
+HEAD = {"ahead": 0.5, "below": 0.3, "level": {"front": 0.4, "below": 0.6}}
+
+
+@pytest.mark.parametrize(
+    ("others", "pin", "off"),
+    [
+        ({}, (0.0, 0.0), (0.0, 0.0)),
+        ({"chassis": CHASSIS, "head": HEAD}, (0.5, 0.3), (0.4 - 0.8, 1.5 - 0.6)),
+    ],
+)
+def test_the_load_hangs_at_the_radius(
+    others: dict[str, Any], pin: tuple[float, float], off: tuple[float, float]
+) -> None:
+    """Reference: analytic, rotation of the straight boom and its deflection. The pin of the head is
+    ahead of and below the tip; the foot and the load off the pin do not turn.
+    """
+    for cell in cells(flexible() | others, 9.0e5):
         assert cell.tip is not None
         assert cell.angle is not None
         assert cell.tip < -0.02
-        turn = radians(cell.angle)
-        loaded = cell.length * cos(turn) - cell.tip * sin(turn)
-        assert loaded == pytest.approx(cell.radius, abs=1.0e-5)
-        assert cell.droop == pytest.approx(-cell.tip * sin(turn), abs=1.0e-5)
+        x, z = cos(radians(cell.angle)), sin(radians(cell.angle))
+        length, lowered = cell.length + pin[0], pin[1] - cell.tip
+        loaded = length * x + lowered * z + off[0], length * z - lowered * x + off[1]
+        assert loaded == pytest.approx((cell.radius, cell.height), abs=1.0e-5)
+        assert cell.droop == pytest.approx(-cell.tip * z, abs=1.0e-5)
 
 
 def test_rows_by_luffing_angle_have_the_capacities_at_their_radii() -> None:
@@ -239,6 +254,10 @@ def test_cells_without_a_governing_proof() -> None:
     }
     windy["combination"][0]["factors"]["wind"] = 1.0
     assert {cell.reason for cell in cells(windy, 4.0e5)} == {"cylinder force with any payload"}
+    # Its radius is that of the straight boom.
+    lying = rigid(radii=[], luffing=[60.0], lengths=[14.0]) | {"chassis": CHASSIS}
+    (heavy,) = cells(lying, capacity=0.1)
+    assert (heavy.capacity, heavy.radius) == (None, pytest.approx(14.0 * 0.5 - 0.8))
 
 
 def test_configurations() -> None:

@@ -54,6 +54,7 @@ def test_distances_are_parts_of_the_reference() -> None:
     still = replace(own, tip=np.zeros(SHORT.size), slow_period=np.nan, stress=0.0)
     unknown = dict.fromkeys(("slow_period_off", "stress_off", "tip_off"))
     assert own.distances_from(still) == {"first_peak_off": 0.0, "pad_force_off": 0.0} | unknown
+    assert replace(own, stress=np.inf).distances_from(own)["stress_off"] is None
     wave = np.sin(4.0 * np.pi * SHORT)
     assert mean_period(SHORT, 0.05 + 1e-3 * wave) == pytest.approx(0.5, rel=0.01)
     # 1e-12 of the deflection is round-off, not a period.
@@ -62,11 +63,16 @@ def test_distances_are_parts_of_the_reference() -> None:
 
 def test_a_pad_force_is_held() -> None:
     """Reference: analytic. An impact of 1 ms contributes a twentieth in a window of 20 ms."""
-    forces = np.zeros((SHORT.size, 2))
+    forces = np.zeros((SHORT.size, 3))
     forces[700, 0] = -4000.0
     forces[1000:, 1] = 150.0
+    forces[:, 2] = np.nan
     assert sustained_force(SHORT, forces) == pytest.approx(4000.0 * 1e-3 / AVERAGING_TIME)
-    assert np.isnan(sustained_force(SHORT, np.full((SHORT.size, 2), np.nan)))
+    # An interval of output that is longer than the window is the window.
+    assert sustained_force(0.1 * np.arange(20), forces[690:710]) == 4000.0
+    # Nothing touches, or the run is shorter than the window.
+    for unknown in (forces[:, 2:], forces[:1], forces[:10]):
+        assert np.isnan(sustained_force(SHORT[: len(unknown)], unknown))
 
 
 @pytest.fixture

@@ -269,6 +269,10 @@ LIGHT, LIGHTER = 7850.0 * MAST.area, 7850.0 * FLY.area
         # The carried weight over the number of falls presses from the tip to the base.
         (f"{ROPE}600.0\ngravity = 5.0\n", [1500.0, 0.0], [1500.0, 1500.0]),
         (f"{ROPE}100.0\n[gravity]\n", [100.0 * G, 0.0], [100.0 * G, 100.0 * G]),
+        # A hoisted load hangs from the tip.
+        ("[gravity]\nangle = 30.0\n[hoist]\nmass = 300.0\nstiffness = 1e6\nhanging = true\n",
+         [G * (5.0 * LIGHT + 8.0 * LIGHTER + 300.0), G * LIGHT],
+         [G * (7.0 * LIGHTER + 300.0), G * (LIGHTER + 300.0)]),
         # A force may act anywhere, and pass at a pin.
         (FORCE, [5e3, 0.0], [5e3, 0.0]),
         (f"locked_at = 8.0\n{FORCE}", [5e3, 5e3], [0.0, 0.0]),

@@ -9,8 +9,8 @@ import pandas as pd
 import pytest
 from scipy.stats import norm
 
-from protractile.cases import run_case
-from protractile.runs.case import reading
+from protractile.cases import change, run_case
+from protractile.runs.case import reading, toml
 from protractile.runs.case.actions import STANDARD_GRAVITY
 from protractile.runs.case.reading import CheckedCase, load
 from protractile.runs.cautions.context import Context
@@ -19,12 +19,22 @@ from protractile.runs.check import check_case
 from protractile.runs.pipeline.quantities import decay_time
 from protractile.runs.report.figure_context import Figure
 from protractile.runs.report.summary_table import limit_faults, limit_table
-from protractile.runs.sweep import output
-from protractile.runs.sweep.points import plan
+from protractile.runs.sweep import output, sampling
+from protractile.runs.sweep.points import plan, tables_of
 from protractile.runs.sweep.sampling import QUANTILES, normal_points
 from protractile.runs.sweep.search import rigid_wall_cautions
+from protractile.runs.sweep.variation import numbers
 from tests.docs.conftest import toml_blocks
-from tests.runs.case_texts import CANTILEVER, LOAD, MASS, THIN, edited, static_tip, table
+from tests.runs.case_texts import (
+    CANTILEVER,
+    LOAD,
+    MASS,
+    THIN,
+    edited,
+    shipped,
+    static_tip,
+    table,
+)
 from tests.runs.summaries import printed, run
 from tests.system.run_folder import protractile
 
@@ -114,6 +124,38 @@ def test_changes_are_those_of_closed_forms(capsys: pytest.CaptureFixture[str]) -
     assert table.index[0] == "segment[1].length"
     assert table.loc["damping.modal", "decay_time"] == pytest.approx(-1.0, rel=2e-4)
     assert "Change of results in % by 1 % of each number: beam" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "keys"),
+    [
+        ("crane", ["payload.mass", "gravity.angle", "cylinder[1].ground[2]"]),
+        ("drawn-out", ["segment[1].load", "joint[1].extension"]),
+    ],
+)
+def test_changes_are_those_of_changed_cases(
+    name: str, keys: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Reference: other code path, runs of the case with 1 % less and more, if these are valid."""
+    case = change(shipped(name), **{"time.duration": 0.05, "time.output_step": 0.01})
+    Path("case.toml").write_text(toml.dumps(case), encoding="utf-8")
+    chosen = [one for one in numbers(tables_of(case)) if one[0].name in keys]
+    monkeypatch.setattr(sampling, "numbers", lambda tables: chosen)
+    planned, changed = sampling.plan_changes("case.toml", None, None)
+    found = sampling.changes(planned, changed, run(planned))
+    (model,) = planned.coordinates["model"]
+    for (place, value), of in zip(chosen, changed, strict=True):
+        sides = sorted(of.points if len(of.points) == 2 else [0, *of.points])
+        runs = [
+            run_case(change(case, **{place.name: (1.0 + 0.01 * side) * value}), [model])
+            for side in (sides[0], 0, sides[1])
+        ]
+        low, base, high = (results.measure(model) for results in runs)
+        for result in {*sampling.SHOWN} & {*found.columns}:
+            difference = (high[result] - low[result]) / (sides[1] - sides[0])
+            expected = pytest.approx(difference / abs(base[result]), rel=1e-6, abs=2e-7)
+            assert found.loc[place.name, result] == expected, result
 
 
 @pytest.mark.slow

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Verdicts on the statements of the paper, and their tables in the terminal."""
 
-import re
 from typing import Any
 
 import numpy as np
