@@ -8,13 +8,13 @@ moment causes tension at the top, a positive lateral moment tension at larger y.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from protractile.analysis.model import AnalysisModel
-from protractile.analysis.pads import largest_forces, loaded_pads, pad_forces, side_force
+from protractile.analysis.pads import largest_force, loaded_pads, pad_forces, side_force
 from protractile.analysis.states import States
 from protractile.analysis.stresses import Fibres
 from protractile.dynamics.gap_system import GapSystem
@@ -22,7 +22,7 @@ from protractile.dynamics.line import LineQuantity
 from protractile.geometry.arrays import Array, Indices
 from protractile.geometry.axial import foot_thrust
 from protractile.geometry.boom import Boom, Segment
-from protractile.geometry.contact_places import contact_centres, pads
+from protractile.geometry.contact_places import ContactPair, contact_centres, pads
 from protractile.geometry.ground import difference_name, force_name
 from protractile.geometry.joint import PADS_OF_SIDE, Joint, Pad
 from protractile.geometry.section import EACH_SIDE, Direction
@@ -107,7 +107,7 @@ def measure_boom(states: States) -> Iterator[Measured]:
     if (data := states.recorded) is not None:
         if "rope_force_peak" in data:
             yield _single("rope_force", "rope", data["rope_force_peak"].values, time)
-        yield from _recorded_contacts(boom, states.model.system, data)
+        yield from _recorded_contacts(states, data)
     else:
         yield from _static_contacts(states)
         yield from _rotations(states)
@@ -126,22 +126,42 @@ def station_label(boom: Boom, station: Station) -> tuple[str, str]:
     return name, f"station {number}{', lateral' if station.direction == 'y' else ''}"
 
 
-def _recorded_contacts(boom: Boom, system: GapSystem, data: xr.Dataset) -> Iterator[Measured]:
+def _recorded_contacts(states: States, data: xr.Dataset) -> Iterator[Measured]:
     """Yield forces of contacts and pads in motion: means and maxima over output intervals."""
+    boom, system, contacts = states.boom, states.model.system, pads(states.boom)
     time, peaks = data["time"].values, data["contact_force_peak"].values
     for station in boom.stations:
         part, place = station_label(boom, station)
         force = data["contact_force"].values[:, station.index]
         yield _single("contact_force", part, force, time, station.x, place)
-        if station.joint is None:
-            continue
         here = np.flatnonzero(system.station_of_row == station.index)
-        # A law that acts on both sides gives the net force.
-        net = any(len({term.side for term in system.laws[row].terms}) > 1 for row in here)
-        ends = np.array([peaks[:, station.index].min(), peaks[:, station.index].max()])
-        for pad, name, both in largest_forces(station, ends, net):
-            force = np.array([both / PADS_OF_SIDE])
+        loaded: Iterable[tuple[Pad, str, Array]] = ()
+        if (pairs := _own_rows(contacts, station, here)) and states.row_peaks.size:
+            of_rows = np.abs(states.row_peaks[here])
+            loaded = pad_forces(station, pairs, of_rows[:, None])
+        elif station.joint is not None and station.joint.pad is not None:
+            # A law that acts on both sides gives the net force.
+            net = any(len({term.side for term in system.laws[row].terms}) > 1 for row in here)
+            ends = np.array([peaks[:, station.index].min(), peaks[:, station.index].max()])
+            name, both = largest_force(station, ends, net)
+            loaded = [(station.joint.pad, name, np.array([both / PADS_OF_SIDE]))]
+        for pad, name, force in loaded:
             yield from _pad(part, f"{place}, {name}", station.x, force, pad, None)
+
+
+def _own_rows(
+    contacts: Sequence[ContactPair], station: Station, rows: Indices
+) -> list[ContactPair]:
+    """Return the contact pairs of a station with pads; none if they have no rows of their own."""
+    pairs = [
+        pair
+        for pair in contacts
+        if pair.station.index == station.index
+        and pair.joint.padded
+        and pair.side
+        and station.law.one_sided(pair.side) is not None
+    ]
+    return pairs if len(pairs) == rows.size else []
 
 
 def _pad(
@@ -177,9 +197,8 @@ def _static_contacts(states: States) -> Iterator[Measured]:
             closed, play = _closed_play(system, gaps, here)
             limit = play if play > 0.0 else None
             yield _single("closed_play", part, closed, time, station.x, place, limit=limit)
-        pairs = [pair for pair in contacts if pair.station.index == station.index]
         loaded = loaded_pads(station, sides)
-        if station.joint is not None and station.joint.pads and len(pairs) == here.size:
+        if pairs := _own_rows(contacts, station, here):
             forces_of_pairs = [
                 _on_side(systems, pair.side, gaps, here[k : k + 1]) for k, pair in enumerate(pairs)
             ]

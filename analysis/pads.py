@@ -19,65 +19,26 @@ from protractile.geometry.station import Station
 _SIDE_NAMES = {on: side for side, on in SIDES.items()}
 
 
-def largest_forces(station: Station, pushes: Array, net: bool) -> Iterator[tuple[Pad, str, float]]:
-    """Yield the governing pads of a station, their name, and the force in N on both of a pair.
+def largest_force(station: Station, pushes: Array, net: bool) -> tuple[str, float]:
+    """Return the name of the governing pads of a station without ``pads``, and the force in N on
+    both of the pair.
 
-    The forces ``pushes`` are those of :func:`_pair_forces`, or the ``net`` forces of both sides.
+    The forces ``pushes`` are those of a side, negative for side −1, or the ``net`` forces of both
+    sides.
     """
-    if station.joint is not None and station.joint.pad is not None:
-        largest = max(pushes, key=abs)
-        force = abs(float(largest))
-        if net:
-            # Without preload by shims, one side carries the net force alone.
-            sides = [station.law.one_sided(side) for side in EACH_SIDE]
-            preloads = [float(abs(law.force(np.zeros(())))) for law in sides if law]
-            force = max(force, max(preloads) + 0.5 * force)
-        side = _SIDE_NAMES[station.direction, 1 if largest > 0.0 else -1]
-        yield station.joint.pad, side, force
-    forces = _pair_forces(station, pushes)
-    for number, (pad, force) in enumerate(zip(station.pads, forces, strict=True)):
-        before = sum(other.side == pad.side for other in station.pads[:number])
-        yield pad, _name(pad.side, before), force
+    largest = max(pushes, key=abs)
+    force = abs(float(largest))
+    if net:
+        # Without preload by shims, one side carries the net force alone.
+        sides = [station.law.one_sided(side) for side in EACH_SIDE]
+        preloads = [float(abs(law.force(np.zeros(())))) for law in sides if law]
+        force = max(force, max(preloads) + 0.5 * force)
+    return _SIDE_NAMES[station.direction, 1 if largest > 0.0 else -1], force
 
 
 def _name(side: PadSide, before: int) -> str:
     """Return the name of a pad within its station: its side, and its number if not the first."""
     return f"{side} {1 + before}" if before else side
-
-
-def _pair_forces(station: Station, pushes: Array) -> list[float]:
-    """Return the largest force in N on each pair of pads of a station.
-
-    Args:
-        station: the station.
-        pushes: forces (num_pushes,) in N of all pads on one side, negative for side −1. This is the
-            side with the larger force. Its approach determines the force on the other side.
-    """
-    laws, sides = [], [SIDES[pad.side][1] for pad in station.pads]
-    for pad, side in zip(station.pads, sides, strict=True):
-        whole = sum(other.stiffness for other in station.pads if other.side == pad.side)
-        there = station.law.one_sided(side)
-        assert there is not None
-        part = there.with_weight(pad.stiffness / whole)
-        laws.append(part.with_clearance(-pad.shim))
-    if not laws:
-        return []
-
-    from scipy.optimize import brentq
-
-    def force(approach: float) -> Array:
-        return np.array([float(law.force(np.array(approach))) for law in laws])
-
-    def excess(approach: float, push: float) -> float:
-        return float(force(approach) @ np.equal(sides, np.sign(push))) - push
-
-    largest = np.zeros(len(laws))
-    for push in pushes[pushes != 0.0]:
-        reach = 1.0e-3
-        while excess(np.sign(push) * reach, push) * push < 0.0:
-            reach *= 2.0
-        largest = np.maximum(largest, np.abs(force(brentq(excess, -reach, reach, args=(push,)))))
-    return [float(most) for most in largest]
 
 
 def loaded_pads(station: Station, sides: Sequence[Array]) -> Iterator[tuple[Pad, str, Array]]:
@@ -113,26 +74,26 @@ def pad_forces(
 ) -> Iterator[tuple[Pad, str, Array]]:
     """Yield the pads of a station whose contacts have rows of their own, as :func:`loaded_pads`.
 
-    Plates that bend share the force of a side otherwise than the stiffness of its pads.
+    Plates that bend share the force of a side otherwise than the stiffness of its pads. In space
+    the pads of a pair have a row each, and the one that carries more counts.
 
     Args:
-        station: station of a joint with ``pads``.
+        station: station of a joint with pads.
         contacts: contact pairs of the station.
         forces: force (num_states,) in N of each of them.
     """
     assert station.joint is not None
-    pairs: dict[tuple[Side, int], Array] = {}
+    pairs: dict[tuple[Side, int], list[Array]] = {}
     counts: Counter[tuple[Side, Offset]] = Counter()
     for contact, force in zip(contacts, forces, strict=True):
         point = contact.side, contact.inner
-        pair = contact.side, counts[point]
+        pairs.setdefault((contact.side, counts[point]), []).append(force)
         counts[point] += 1
-        # In space the pads of a pair have a row each.
-        pairs[pair] = pairs.get(pair, 0.0) + force
-    for (side, number), force in pairs.items():
+    for (side, number), of_pair in pairs.items():
         pad, *_ = station.joint.pads_of(station.direction, side)[number]
         if pad is not None:
-            yield pad, _name(_SIDE_NAMES[station.direction, side], number), force / PADS_OF_SIDE
+            force = np.max(of_pair, axis=0) * (len(of_pair) / PADS_OF_SIDE)
+            yield pad, _name(_SIDE_NAMES[station.direction, side], number), force
 
 
 def side_force(law: ContactLaw, side: int, gaps: Array) -> Array:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Self
 
@@ -32,6 +32,8 @@ class States:
     positions: Array  #: modal coordinates (num_states, num_modes)
     #: output of a motion, with forces that are means and peaks over output intervals; None at rest
     recorded: xr.Dataset | None = None
+    #: largest force (num_rows,) of each contact row of a motion in N; empty at rest
+    row_peaks: Array = field(default_factory=lambda: np.zeros(0))
 
     @classmethod
     def of(cls, model: AnalysisModel, rests: Mapping[float, Array]) -> Self:
@@ -56,7 +58,8 @@ class States:
     @classmethod
     def in_motion(cls, model: AnalysisModel, trajectory: Trajectory) -> Self:
         """Return the states of a motion."""
-        return cls(model, trajectory.time, trajectory.states, trajectory.data)
+        recorded = trajectory.data, trajectory.row_peaks
+        return cls(model, trajectory.time, trajectory.states, *recorded)
 
     @property
     def boom(self) -> Boom:

@@ -247,7 +247,7 @@ class HangingLoad:
                 swings["swing_aside"] = np.cos(slewed) * along_y - np.sin(slewed) * along_x
             for name, values in swings.items():
                 data[name] = "time", values, {"units": "m", "length": self.pendulum.length}
-        return Trajectory(data, motion.states)
+        return Trajectory(data, motion.states, motion.row_peaks)
 
     def _coordinates(self, outputs: Container[str]) -> int:
         """Return the number of coordinates of the load, by the names of the boom's outputs."""

@@ -218,7 +218,7 @@ class Integration:
                 added[f"{name}{travel.suffix}"] = ("time", value, of)
         data = trajectory.data.assign(added)
         data.attrs |= {"stick_slip": stick_slip} if stick_slip else {}
-        return Trajectory(data, trajectory.states)
+        return Trajectory(data, trajectory.states, trajectory.row_peaks)
 
 
 def step_schedule(system: GapSystem, times: Array) -> Schedule:

@@ -9,7 +9,7 @@ drives.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from numbers import Real
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
@@ -122,10 +122,13 @@ class Trajectory:
             count as one), ``first_contact`` in s (NaN if none), ``contact_changes``, the number of
             times that contacts open or close, ``energy_residual``.
         states: modal coordinates (num_times, num_modes).
+        row_peaks: largest force (num_rows,) of each contact row in N, with its sign; empty if it
+            is unknown.
     """
 
     data: xr.Dataset
     states: Array
+    row_peaks: Array = field(default_factory=lambda: np.zeros(0))
 
     @classmethod
     def record(
@@ -193,7 +196,8 @@ class Trajectory:
         )
         residual = energy_residual(output.energies, energy_floor)
         data.attrs["energy_residual"] = float(np.abs(residual).max())
-        return cls(data, output.states)
+        high, low = output.peaks.max(axis=0), output.peaks.min(axis=0)
+        return cls(data, output.states, np.where(high >= -low, high, low))
 
     @classmethod
     def from_states(

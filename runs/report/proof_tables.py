@@ -58,7 +58,8 @@ KINDS: Mapping[str, Kind] = {
         "larger sections, a smaller extension or less force along the boom",
     ),
     "pad": Kind(
-        "F/(length · width) ≤ allowable pressure/γ; F: force of one pad of a pair",
+        "F/(length · width) ≤ allowable pressure/γ; F: force of one pad of a pair, in space of the "
+        "one that carries more",
         "longer or wider pads, or a longer overlap",
     ),
     "cylinder": Kind(

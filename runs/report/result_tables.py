@@ -267,9 +267,8 @@ def pad_table(results: Results) -> Table:
         Column("utilisation", [pad.utilisation for pad in pads], ".0f", "%"),
     )
     note = (
-        "Largest force of one pad during the motion. Pads on one side of a station share its force "
-        "in proportion to their stiffness; the two pads of a pair carry equal forces. The pressure "
-        "on a pad is taken as uniform."
+        "Largest force of one pad of a pair during the motion, in space of the one that carries "
+        "more. The pressure on a pad is taken as uniform."
     )
     return Table("Slide pads", columns, (note,), "pads")
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,13 +11,19 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from protractile.analysis.rows import MOTION
+from protractile.analysis.rows import REST as AT_REST
 from protractile.cases import run_case
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.contact_table import TableContact
 from protractile.dynamics.motion import initial_state
+from protractile.geometry.head import Head
+from protractile.geometry.joint import Pad
 from protractile.runs.case import toml
+from protractile.runs.case.actions import STANDARD_GRAVITY
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.contact import JointTable
+from protractile.runs.case.kinds.finite_element import BeamElements
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case
 from protractile.runs.cautions.context import Context
@@ -284,3 +291,34 @@ def test_walls_under_pads_are_the_cause_of_a_large_deflection(tmp_path: Path) ->
         cause,
         "check units and loads",
     ]
+
+
+def test_in_space_the_pad_that_carries_more_counts() -> None:
+    """Reference: by hand, the torque of a payload beside the axis on pads at the corners.
+
+    At each station pads at ±b/2 carry F/2 ± T/b, and both stations of a joint the whole torque, at
+    rest and in the motion of a boom that stays at rest.
+    """
+    case, beside = shipped("inspection-arm"), 0.2
+    assert case.payload is not None
+    pad = Pad(0.12, 0.05, thickness=0.0125, modulus=4e8, bears="corner")
+    changes = {
+        "joints": tuple(replace(joint, lateral_play=0.02, pad=pad) for joint in case.joints),
+        "head": Head(beside=beside),
+        "models": (BeamElements(name="beam", element_length=0.5, theory="timoshenko"),),
+        "time": case.time.model_copy(update={"duration": 0.05, "output_step": 0.01}),
+        **dict.fromkeys(("load_cases", "combinations", "spectra"), ()),
+        **dict.fromkeys(("wind", "limits")),
+    }
+    found = run_case(case.model_copy(update=changes))
+    torque = case.payload.mass * STANDARD_GRAVITY * beside
+    for state in (AT_REST, MOTION):
+        rows = found.rows.where(state=state, play=True)
+        for joint in found.boom.joints:
+            inner = found.boom.segments[joint.inner]
+            width = inner.section_at(inner.start).face("z", 1).width
+            whole, larger = (
+                sum(abs(row.value) for row in rows.where(quantity=name, part=inner.name))
+                for name in ("contact_force", "pad_force")
+            )
+            assert 0.5 * width * (2.0 * larger - whole) == pytest.approx(torque, rel=1e-7)
