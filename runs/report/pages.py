@@ -49,13 +49,14 @@ def _data_uri(path: Path) -> str:
     from PIL import Image
 
     if path.suffix.lower() == ".gif":
-        return f"data:image/gif;base64,{_text(path.read_bytes())}"
+        return f"data:image/gif;base64,{base_64(path.read_bytes())}"
     smaller = BytesIO()
     picture = Image.open(path).convert("RGB")
     picture.thumbnail((WIDEST, WIDEST))
     picture.save(smaller, **_WEBP)
-    return f"data:image/webp;base64,{_text(smaller.getvalue())}"
+    return f"data:image/webp;base64,{base_64(smaller.getvalue())}"
 
 
-def _text(content: bytes) -> str:
+def base_64(content: bytes) -> str:
+    """Return bytes in base 64."""
     return base64.b64encode(content).decode("ascii")

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Sequence
 from io import BytesIO
 from typing import Any
@@ -17,6 +16,7 @@ from matplotlib.figure import Figure as Sheet
 
 from protractile.runs.report import theme
 from protractile.runs.report.charts import Chart, Curve, Keys, Map
+from protractile.runs.report.pages import base_64
 
 # Intervals into which a long curve is divided in a picture; the extremes of each are drawn.
 INTERVALS = 700
@@ -139,5 +139,4 @@ def svg_uri(sheet: Sheet) -> str:
     content = BytesIO()
     with matplotlib.rc_context(theme.RC | theme.SVG_RC):
         sheet.savefig(content, format="svg", metadata={"Date": None})
-    text = base64.b64encode(content.getvalue()).decode("ascii")
-    return f"data:image/svg+xml;base64,{text}"
+    return f"data:image/svg+xml;base64,{base_64(content.getvalue())}"

@@ -6,7 +6,6 @@ A page stores displacements as a few shapes of 16-bit numbers, and stresses as 8
 
 from __future__ import annotations
 
-import base64
 import json
 from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
@@ -25,7 +24,7 @@ from protractile.runs.pipeline.model_quality import main_models
 from protractile.runs.pipeline.run import Run
 from protractile.runs.report import theme
 from protractile.runs.report.boom_pictures import PERCENTILE
-from protractile.runs.report.charts import compress, pack_plotly
+from protractile.runs.report.charts import compress, pack_plotly, typed
 from protractile.runs.report.marks import Mark, marks_of
 from protractile.runs.report.pages import page
 from protractile.runs.report.scene import SECTION_DRAWN, Scene
@@ -75,7 +74,7 @@ def viewer(run: Run) -> str | None:
         title=case.title,
         view=content,
         plotly=pack_plotly(),
-        content=compress(json.dumps(content, default=_typed)),
+        content=compress(json.dumps(content, default=typed)),
     )
 
 
@@ -145,8 +144,6 @@ def pack_view(view: View, angle: float) -> dict[str, Any]:
 
 def _figure(view: View, marks: Sequence[Mark], reach: Array) -> dict[str, Any]:
     """Return the figure of plotly; ``reach`` (2, 3) has the limits of all points in m."""
-    from plotly.graph_objects import Figure
-
     colors = colormaps[theme.STRESS](np.linspace(0.0, 1.0, 9))
     boom = {
         "type": "mesh3d",
@@ -195,7 +192,7 @@ def _figure(view: View, marks: Sequence[Mark], reach: Array) -> dict[str, Any]:
             "dragmode": "orbit",
         },
     }
-    return dict(Figure([boom, *wires], layout).to_dict())
+    return {"data": [boom, *wires], "layout": layout}
 
 
 def extensions(scene: Scene, time: Array) -> Mapping[str, tuple[Array, Array]]:
@@ -234,11 +231,3 @@ def few_shapes(displacement: Array) -> tuple[Array, Array]:
         if np.abs(residual).max() <= TRUNCATION * largest:
             break
     return parts[:, :count], shapes[:count]
-
-
-def _typed(values: Array) -> dict[str, str]:
-    """Return an array in the format of the page's script."""
-    return {
-        "kind": values.dtype.name,
-        "bytes": base64.b64encode(values.tobytes()).decode("ascii"),
-    }

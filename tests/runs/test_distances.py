@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from plotly.graph_objects import Figure as Plot
 
 from protractile.analysis.low_pass import mean_period
 from protractile.cases import change, run_case
@@ -136,6 +137,7 @@ def test_maps_have_levels_and_times_of_a_shorter_comparison(
     drawn = {path.name for path in Path("out/figures").glob("*off.png")}
     assert drawn == {"sweep-first-peak-off.png", "sweep-tip-off.png"}
     chart = figures[-1].chart
+    Plot(chart.plain)
     assert chart.panels == [
         f"{SWEPT[0]}, friction {x}" for x in ("0.1: 0.5 to 50 %", "0.2: 2 to 3 %")
     ]

@@ -9,6 +9,7 @@ import matplotlib
 import numpy as np
 import pytest
 from matplotlib import image
+from plotly.graph_objects import Figure as Plot
 
 from protractile.cases import run_case
 from protractile.runs.case.schema import LimitsTable
@@ -59,6 +60,7 @@ def test_draws_each_figure_as_png(results: Results, tmp_path: Path) -> None:
     write_pictures(figures, tmp_path)
     for figure in figures:
         if figure.chart is not None:
+            Plot(figure.chart.plain)
             of_boom = figure.name in {"at-rest", "envelopes", "modes"}
             assert figure.chart.along == ("x along the boom (m)" if of_boom else "time (s)")
             unit = "kN" if figure.name == "contact-first" else "mm"
@@ -75,7 +77,7 @@ def test_pictures_and_plots_show_the_same(results: Results, name: str) -> None:
     chart = next(figure.chart for figure in figures_of(results) if figure.name == name)
     with matplotlib.rc_context(theme.RC):
         panels = draw_chart(chart, name).axes
-    plot = chart.figure
+    plot = Plot(chart.plain)
     titles = [
         note.text.removeprefix("<b>").removesuffix("</b>") for note in plot.layout.annotations
     ]

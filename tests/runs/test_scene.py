@@ -11,6 +11,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 from matplotlib.transforms import Affine2D
+from plotly.graph_objects import Figure as Plot
 
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.line import Line
@@ -277,6 +278,7 @@ def places(page: dict[str, Any]) -> np.ndarray:
 def test_a_page_shows_the_drawn_places_and_stresses(shown: View) -> None:
     """Reference: the points of the scene, with 16 bits for each shape and 8 for stress."""
     page, scene = pack_view(shown, 0.0), shown.scene
+    Plot(page["figure"])
     expected = [scene.magnify(moved, page["magnified"]) for moved in scene.displacements(FRAMES)]
     largest = float(np.abs(np.subtract(expected, expected[0])).max())
     np.testing.assert_allclose(places(page), expected, atol=2.0 * TRUNCATION * largest)

@@ -112,9 +112,9 @@ def test_thinned_curves_keep_their_extremes() -> None:
         mine = noise[np.intersect1d(kept, inside)]
         assert (mine.min(), mine.max()) == (stretch.min(), stretch.max())
     time = np.linspace(0.0, 10.0, 3 * MOST)
-    (curve,) = Chart(time, [Curve("a", np.sin(50.0 * time), "#000000")]).figure.data
-    assert curve.x.size <= MOST + 2
-    np.testing.assert_allclose(curve.y, np.sin(50.0 * curve.x), atol=1e-7)
+    (curve,) = Chart(time, [Curve("a", np.sin(50.0 * time), "#000000")]).plain["data"]
+    assert curve["x"].size <= MOST + 2
+    np.testing.assert_allclose(curve["y"], np.sin(50.0 * curve["x"]), atol=1e-7)
 
 
 def test_shell_beam_and_bonded_are_read_first() -> None:
