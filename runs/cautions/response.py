@@ -336,6 +336,8 @@ def limits(context: Context) -> Iterator[str]:
         elif combined and not limit.is_met_by(combined[1]):
             name, most = combined
             yield f"the limit {limit} is exceeded under the loads of {name}: {limit.format(most)}"
+        elif at_rest and context.boom.telescopes:
+            yield Sentence(f"Limit {limit}: {static} at the extension at t = 0; a run decides.")
         elif at_rest:
             met = f"Limit {limit}: met in this case, {limit.format(largest)}"
             if combined:

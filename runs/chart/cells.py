@@ -74,7 +74,8 @@ class Cell:
     height: float | None = None  #: height of the tip in m
     tip: float | None = None  #: tip deflection in m under the rated load
     droop: float | None = None  #: increase of the radius in m by the tip deflection
-    cylinder_force: float | None = None  #: force of the first cylinder in N under the rated load
+    #: largest force of the first cylinder in N under the rated load
+    cylinder_force: float | None = None
     #: governing proof of each kind, the governing one first
     proofs: tuple[Row, ...] = ()
 
@@ -161,7 +162,7 @@ class Search:
         tip, name = _tip(states), force_name(1)
         radius, height = hook_place(self.case, states.boom, table.angle, tip)
         straight, _ = hook_place(self.case, states.boom, table.angle, 0.0)
-        force = float(states.observed(name)[0]) if states.boom.cylinders else None
+        force = float(max(states.observed(name), key=abs)) if states.boom.cylinders else None
         return Cell(
             self.configuration, self.radius if self.angle is None else radius, capacity, reason,
             table.angle, height, tip, radius - straight, force, tuple(proofs.values()),

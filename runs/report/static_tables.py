@@ -30,6 +30,7 @@ _NAMES: Mapping[str, str] = {
     "contact_force": "contact force",
     "cylinder_force": "cylinder force",
     "cylinder_force_difference": "cylinder force difference",
+    "larger_cylinder_force": "larger force of two cylinders",
     "foot_reaction": "foot reaction",
 }
 # Mark of governing values in a table.

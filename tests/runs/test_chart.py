@@ -260,6 +260,18 @@ def test_cells_without_a_governing_proof() -> None:
     assert (heavy.capacity, heavy.radius) == (None, pytest.approx(14.0 * 0.5 - 0.8))
 
 
+def test_the_cylinder_force_is_that_under_the_whole_load() -> None:
+    """Reference: other input, the load without its ramp."""
+    load = {"segment": "fly", "x": "head", "magnitude": -0.5}
+    forces = []
+    for history in ({}, {"ramp": 0.5}):
+        tables = rigid(radii=[6.0], lengths=[9.0])
+        tables["load_case"] = [{"name": "lift", "load": [load | history]}]
+        (cell,) = cells(tables)
+        forces.append(cell.cylinder_force)
+    assert forces[0] == pytest.approx(forces[1], rel=1e-6)
+
+
 def test_configurations() -> None:
     """Reference: by construction, in proportion."""
     shared = [one.extension for one in planned(of_three(lengths=[8.0, 11.0, 17.0]))]

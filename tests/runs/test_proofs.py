@@ -12,7 +12,7 @@ from protractile.analysis.plate_buckling import (
     PlateStresses,
     reduced_stress,
 )
-from protractile.analysis.rows import Row, Rows
+from protractile.analysis.rows import Row, Rows, static_rows
 from protractile.cases import run_case
 from protractile.geometry.box import BoxSection
 from protractile.geometry.material import Material
@@ -23,6 +23,7 @@ from protractile.runs.pipeline.proofs import proofs_of as rows_of_proofs
 from protractile.runs.report.additions import Addition
 from protractile.runs.report.document import render
 from protractile.runs.report.proof_tables import governing_proof, holds, proof_text
+from protractile.runs.report.static_tables import static_table
 from tests.runs.case_texts import (
     CLAMPED,
     HINGED,
@@ -376,3 +377,8 @@ start = {{ state = "equilibrium" }}
     assert larger.value == pytest.approx(0.5 * (abs(both.value) + abs(apart.value)))
     assert larger.limit == pytest.approx(0.5 * 3e5)
     assert abs(apart.value) > 0.1 * abs(both.value)
+    assert state.states is not None
+    rows = Rows(static_rows(state.states, "beam"))
+    shown = static_table(state.combined.case, state.states.boom, rows)
+    (used,) = (row[-1] for row in shown.rows if row[0].startswith("larger force of two cylinders"))
+    assert used == f"{100.0 * larger.utilisation:.3g}"

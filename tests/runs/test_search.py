@@ -13,6 +13,7 @@ from protractile.cases import change, run_case
 from protractile.runs.case import reading, toml
 from protractile.runs.case.actions import STANDARD_GRAVITY
 from protractile.runs.case.reading import CheckedCase, load
+from protractile.runs.case.schema import LimitsTable
 from protractile.runs.cautions.context import Context
 from protractile.runs.cautions.rules import cautions
 from protractile.runs.check import check_case
@@ -288,6 +289,15 @@ def test_check_compares_limits_with_the_tip_at_rest() -> None:
     for limits, lines in told.items():
         checked = check_case(CheckedCase(reading.load(write(limits)))).lines
         assert [line for line in checked if "imit " in line] == lines
+
+
+def test_check_leaves_the_tip_of_a_boom_that_telescopes_to_a_run() -> None:
+    """Reference: by construction; a run takes the static tip at the largest extension, too."""
+    case = shipped("crane-telescopes")
+    limits = LimitsTable.model_validate({"tip_at_rest": 9.0})
+    checked = check_case(CheckedCase(case.model_copy(update={"limits": limits}))).lines
+    (line,) = (line for line in checked if line.startswith("Limit "))
+    assert line.endswith(" mm at the extension at t = 0; a run decides.")
 
 
 SERVICE = table("[[load_case]]", name="a") + table(
