@@ -35,6 +35,8 @@ from tests.runs.case_texts import CLAMPED, HINGED, REST, STEEL, elements, joint,
 
 # Relative error of numbers in texts of three and of four digits, and of computed numbers.
 THREE, FOUR, NONE = 5.0e-3, 5.0e-4, 1.5e-4
+# Quantities of which the largest one counts, with the beginnings of their rows in ``check``.
+LARGEST = {"stress": "stress, ", "pad_pressure": "pad, "}
 # Durations in s of cases whose load leaves the ground later than the others' loads begin.
 LIFTED = {"hoist": 5.0, "luffed": 3.0}
 
@@ -133,6 +135,10 @@ def of_check(checked: Check) -> Iterator[View]:
     ):
         if row in static.index:
             yield View(quantity, "check", number(static.loc[row, column]), THREE, True)
+    for quantity, row in LARGEST.items():
+        shown = [number(cell) for cell in static.loc[static.index.str.startswith(row), largest]]
+        if shown:
+            yield View(quantity, "check", max(map(abs, shown)), THREE, True)
     for quantity, words, unit in (
         ("tip at t = 0", "Static tip deflection", "mm"),
         ("first frequency", "First natural frequency", "Hz"),
@@ -157,6 +163,10 @@ def of_prove(case: pt.Case, boom: Boom) -> Iterator[View]:
     for kind in ("cylinder force", "foot reaction"):
         if row := state.rows.where(quantity=kind.replace(" ", "_")).largest:
             yield View(kind, "prove", 1e-3 * row.value, NONE, True)
+    # Combinations do not slew.
+    for quantity in () if case.slew else LARGEST:
+        if row := state.rows.where(quantity=quantity).largest:
+            yield View(quantity, "prove", 1e-6 * abs(row.value), NONE, True)
     table = state.combined.combination.model_copy(update={"proofs": ("column",)})
     state = replace(state, combined=state.combined._replace(combination=table))
     for proof in prove(plain, [state]).rows:
@@ -176,6 +186,9 @@ def of_run(case: pt.Case, boom: Boom) -> Iterator[View]:
     yield View("first frequency", "run", static.where(quantity="frequency")[0].value, NONE)
     if force := static.where(quantity="cylinder_force").largest:
         yield View("cylinder force", "run", 1e-3 * force.value, NONE)
+    for quantity in LARGEST:
+        if row := static.where(state=AT_REST, quantity=quantity).largest:
+            yield View(quantity, "run", 1e-6 * abs(row.value), NONE)
     if not (boom.telescopes or boom.spatial or case.slew or case.luff):
         for peak in peaks(rows).where(quantity="foot_reaction"):
             yield View("foot reaction", "run", 1e-3 * rows.at_rest(peak), NONE)
