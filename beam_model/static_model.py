@@ -236,7 +236,8 @@ class _Shape:
         points = [
             (tuple(mass.x for mass in one.masses), one.compression.places) for one in boom.segments
         ]
-        cylinders = [_key(one, "ground", "capacity", "pin") for one in boom.cylinders]
+        # The stiffness of a cylinder that pulls depends on the luffing angle.
+        cylinders = [_key(one, "ground", "stiffness", "capacity", "pin") for one in boom.cylinders]
         others = boom.joints, boom.stops, boom.observations
         parts = (*of_segments, *lateral, *points, *cylinders, *others, frozenset(places))
         self._key: Hashable = parts

@@ -132,6 +132,9 @@ CRANES: dict[str, Boom] = {
         crane(60.0), cylinders=(replace(crane(60.0).cylinders[0], stiffness=None, **DATA),)
     ),
     "in space": crane(45.0, lateral=0.006),
+    "on a softer cylinder": replace(
+        crane(60.0), cylinders=(replace(crane(60.0).cylinders[0], stiffness=2e6),)
+    ),
 }
 
 
