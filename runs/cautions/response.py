@@ -247,13 +247,14 @@ def axial_stresses(context: Context) -> Iterator[str]:
 def bulges(context: Context) -> Iterator[str]:
     """Yield a caution for each model at rest whose bulging walls reduce lateral plays."""
     for state in context.states:
-        parts = []
-        for row in state.closed:
-            if row.limit is not None and row.value > BULGED * row.limit:
-                part = f"{TO_MILLI * row.value:.2g} of {TO_MILLI * row.limit:g} mm"
-                if row.value >= row.limit:
-                    part = f"all {TO_MILLI * row.limit:g} mm, so that pads on both sides press,"
-                parts.append(f"{part} at x = {row.x:g} m")
+        plays = [(row.value, row.limit, f"x = {row.x:g} m") for row in state.closed if row.limit]
+        parts = [
+            f"{TO_MILLI * closed:.2g} of {TO_MILLI * play:g} mm at {where}"
+            for closed, play, where in plays
+            if BULGED * play < closed < play
+        ]
+        if pressed := [where for closed, play, where in plays if closed >= play]:
+            parts.append(f"all of it at {', '.join(pressed)}, where pads on both sides press")
         if parts:
             yield (
                 f"{state.where}, static pad forces make walls bulge, which closes lateral play in "
