@@ -102,8 +102,8 @@ class Cylinder:
     luffing angle gravity.angle of the case"""
     stiffness: Annotated[Positive, In("N/m")] | None = field(default=None, kw_only=True)
     """the axial stiffness in N/m, of two cylinders side by side their sum; unless given, that of
-    oil column and rod by bore, rod, closed and open: the column on the piston if it pushes, on
-    the ring around the rod if the loads at t = 0 make it pull"""
+    oil column and rod by bore, rod, closed and open or stroke: the column on the piston if it
+    pushes, on the ring around the rod if the loads at t = 0 make it pull"""
     dashpot: Annotated[NotNegative, In("N s/m")] = 0.0
     """the linear axial dashpot in N s/m; of two cylinders their sum"""
     spread: Annotated[NotNegative, In("m")] = 0.0
@@ -117,6 +117,8 @@ class Cylinder:
     """the length in m from pin to pin of the retracted cylinder"""
     open: Annotated[Positive, In("m")] | None = None
     """the length in m from pin to pin of the extended cylinder, of one stage, below twice closed"""
+    stroke: Annotated[Positive, In("m")] | None = field(default=None, kw_only=True)
+    """the stroke in m of the cylinder, in place of open, which then is closed plus it"""
     bore: Annotated[Positive, In("m")] | None = None
     """the diameter in m of the piston"""
     rod: Annotated[Positive, In("m")] | None = None
@@ -147,6 +149,11 @@ class Cylinder:
         return 2 if self.spread > 0.0 else 1
 
     @property
+    def longest(self) -> float | None:
+        """The length in m of the extended cylinder by ``open`` or ``stroke``; None without them."""
+        return self.closed + self.stroke if self.closed and self.stroke else self.open
+
+    @property
     def extension(self) -> float | None:
         """The length in m by which the cylinder is extended; None without ``closed``."""
         return None if self.closed is None else self.length - self.closed
@@ -171,15 +178,15 @@ class Cylinder:
 
         It needs ``bore``, ``rod`` and ``closed``. The column is on the pistons, as long as the
         extension; of a cylinder that pulls it is on the rings around the rods, as long as the rest
-        of the stroke, without ``open`` up to twice ``closed``. The rod is as long as the closed
-        cylinder. Barrel and hoses are rigid.
+        of the stroke, without ``open`` and ``stroke`` up to twice ``closed``. The rod is as long as
+        the closed cylinder. Barrel and hoses are rigid.
         """
         area = self.oil_area(pulls)
         assert area is not None
         assert self.rod is not None
         assert self.closed is not None
         rods = 0.25 * pi * self.rod**2 * self.count
-        most = self.open or 2.0 * self.closed
+        most = self.longest or 2.0 * self.closed
         column = most - self.length if pulls else self.length - self.closed
         compliance = max(column, 0.0) / (self.oil_modulus * area)
         return 1.0 / (compliance + self.closed / (_ROD_MODULUS * rods))
@@ -281,11 +288,17 @@ class Cylinder:
         if self.bore is not None and self.rod is not None and self.rod >= self.bore:
             what = f"must be below the bore of {self.bore:g} m, got {self.rod:g} m"
             raise BoomError(f"{where}.rod", what)
-        if self.closed and self.open and self.open >= 2.0 * self.closed:
-            what = f"must be below {2.0 * self.closed:g} m, twice closed, as the rod goes into the"
-            raise BoomError(f"{where}.open", f"{what} closed cylinder, got {self.open:g} m")
-        for key, sign in (("closed", 1.0), ("open", -1.0)):
-            end = getattr(self, key)
+        if self.open and self.stroke:
+            raise BoomError(f"{where}.stroke", "open is given; leave one of them out")
+        if self.stroke and not self.closed:
+            raise BoomError(f"{where}.closed", "missing; the stroke begins at this length")
+        end_key = "stroke" if self.stroke else "open"
+        if self.closed and self.longest and self.longest >= 2.0 * self.closed:
+            most, name = (1.0, "closed") if self.stroke else (2.0, "twice closed")
+            what = f"must be below {most * self.closed:g} m, {name}, as the rod goes into the"
+            got = f"closed cylinder, got {getattr(self, end_key):g} m"
+            raise BoomError(f"{where}.{end_key}", f"{what} {got}")
+        for key, end, sign in (("closed", self.closed, 1.0), (end_key, self.longest, -1.0)):
             if end is not None and sign * (self.length - end) < -_REACH * end:
                 raise BoomError(
                     f"{where}.{key}",

@@ -355,8 +355,8 @@ def _cylinders(state: StaticState, system: System) -> Table:
         rows.append((segment.name, place, length, arm, force))
         if cylinder.extension is not None:
             said = f"Cylinder {k} is extended by {system.text(cylinder.extension, 'm')}"
-            if cylinder.closed and cylinder.open:
-                said += f" of its stroke of {system.text(cylinder.open - cylinder.closed, 'm')}"
+            if cylinder.closed and cylinder.longest:
+                said += f" of its stroke of {system.text(cylinder.longest - cylinder.closed, 'm')}"
             notes.append(f"{said}.")
         if (area := cylinder.oil_area(pulls=force < 0.0)) is not None:
             pressure = amount(abs(force) / area, "Pa")

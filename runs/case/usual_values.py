@@ -284,7 +284,8 @@ def _of_parts(sizes: _Sizes) -> Ranges:
             ),
             "capacity": Usual("the capacity of the cylinder", 0.5 * weight, 1e3 * weight, 1.0e3),
             **dict.fromkeys(
-                ("closed", "open"), Usual("the length of the cylinder", 0.02 * length, length, 20.0)
+                ("closed", "open", "stroke"),
+                Usual("the length of the cylinder", 0.02 * length, length, 20.0),
             ),
             **dict.fromkeys(
                 ("bore", "rod"), Usual("the diameter of the cylinder", 0.02, 0.6, 20.0)

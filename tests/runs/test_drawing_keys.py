@@ -259,6 +259,30 @@ def test_cylinder_by_its_drawing(tmp_path: Path) -> None:
     assert refusal(tmp_path, raised).startswith("cylinder[1].open: 2.4 m, and from ground to lug ")
 
 
+def test_the_stroke_of_a_cylinder_replaces_its_open_length(tmp_path: Path) -> None:
+    """Reference: other input, open = closed + stroke; exact words of refusals."""
+    data = CYLINDER | {"bore": 0.14, "rod": 0.1, "closed": 1.5}
+    up = table("[[load]]", segment="fly", x="head", magnitude=9e4)
+    own, other = (
+        build_boom(read_case(tmp_path, DRAWN + up + table("[[cylinder]]", **data, **end)))
+        for end in ({"stroke": 0.75}, {"open": 2.25})
+    )
+    assert own.cylinders[0].longest == 2.25
+    assert own.cylinders[0].stiffness == other.cylinders[0].stiffness
+    for keys, line in (
+        ({"open": 2.0}, "stroke: open is given; leave one of them out"),
+        ({"stroke": 1.5}, "stroke: must be below 1.5 m, closed, as the rod goes into the closed "
+         "cylinder, got 1.5 m"),
+        ({"stroke": 0.3}, "stroke: 1.8 m, and from ground to lug it is 1.901 m: the cylinder does "
+         "not reach; change it, the ground or the luffing angle"),
+    ):  # fmt: skip
+        text = DRAWN + table("[[cylinder]]", **data | {"stroke": 0.75} | keys)
+        assert refusal(tmp_path, text) == f"cylinder[1].{line}"
+    text = DRAWN + table("[[cylinder]]", **CYLINDER, stiffness=3e7, stroke=0.9)
+    line = "cylinder[1].closed: missing; the stroke begins at this length"
+    assert refusal(tmp_path, text) == line
+
+
 def test_a_cylinder_is_as_stiff_as_the_oil_on_the_side_that_carries(tmp_path: Path) -> None:
     """Reference: the sign of its force at rest on both sides of balance; stiffness by hand."""
     data = {"bore": 0.14, "rod": 0.1, "closed": 1.5, "open": 2.4}
