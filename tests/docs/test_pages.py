@@ -199,7 +199,7 @@ CRANE_MISTAKES = {
 ARM_MISTAKES = {
     "E of steel": ("youngs_modulus = 7.0e10", "youngs_modulus = 2.1e11"),
     "density of steel": ("density = 2700.0", "density = 7850.0"),
-    "pad modulus in MPa": ("modulus = 8e8", "modulus = 800"),
+    "pad modulus in MPa": ("modulus = 4e8", "modulus = 400"),
     "lateral play in mm": ("lateral_play = 0.004", "lateral_play = 4"),
     "lateral play forgotten": ("lateral_play = 0.004\n", ""),
     "detail category in Pa": ("detail_category = 23.0", "detail_category = 23e6"),
