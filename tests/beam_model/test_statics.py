@@ -123,7 +123,7 @@ def crane(
 
 
 # The stiffness of a cylinder follows from its data and its length.
-DATA = {"closed": 2.3, "open": 4.5, "bore": 0.2, "rod": 0.14, "pressure": 2.5e7}
+DATA = {"closed": 2.3, "stroke": 2.2, "bore": 0.2, "rod": 0.14, "pressure": 2.5e7}
 CRANES: dict[str, Boom] = {
     "heavier": crane(60.0, mass=900.0, thrust=5.0e4),
     "unloaded": crane(30.0, thrust=0.0),
