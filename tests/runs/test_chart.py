@@ -374,6 +374,11 @@ def test_table_page_and_files(tmp_path: Path) -> None:
     table = output.chart_table(chart)
     assert table.headings == ("radius\nm", "9 m", "14 m")
     assert {row[1][-1] for row in table.rows} <= {"L", "M"}
+    assert table.notes[1:] == []
+    jack = replace(case.cylinders[0], capacity=None, bore=0.2, rod=0.1)
+    bare = case.model_copy(update={"cylinders": (jack,)})
+    notes = output.chart_table(run.Chart(bare, chart.cells)).notes
+    assert notes[1].startswith("Oil pressure of the cylinder is not proved: it has no `pressure`.")
     far = replace(chart.cells[1][0], tip=-1.4)
     assert (
         "At 14 m and a radius of 4 m the rated load deflects the tip by 10 % of the boom's length: "
