@@ -158,7 +158,8 @@ def extremes(
 ) -> Iterator[Row]:
     """Yield the row with the extreme of each measured quantity; none without values.
 
-    Of equal extremes the first one counts, of different limits that with the largest utilisation.
+    Of equal extremes the first one counts, of different limits that with the largest utilisation;
+    one without a limit counts only if those with a limit are 0.
     """
     rows: dict[tuple[str, str, str], Row] = {}
     for measurement in measured:
@@ -175,8 +176,10 @@ def extremes(
             None if measurement.time is None else float(measurement.time[step]), measurement.limit,
         )  # fmt: skip
         other = rows.setdefault(row.key, row)
+        limited, first = (bool(each.limit and each.value) for each in (row, other))
         size, largest = (abs(each.value) / (each.limit or 1.0) for each in (row, other))
-        if sign * (size - largest) > _ROUND_OFF * largest:
+        larger = sign * (size - largest) > _ROUND_OFF * largest
+        if larger if limited == first else limited:
             rows[row.key] = row
     yield from rows.values()
 

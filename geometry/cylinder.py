@@ -207,14 +207,14 @@ class Cylinder:
     def resistance(self, pulls: bool = False) -> float | None:
         """Return the characteristic resistance in N of cylinders that push, or that pull.
 
-        It is ``capacity``, or that by pressure, and by buckling if they push. Without the data for
-        pulling it is that for pushing.
+        It is ``capacity``, or that by pressure, and by buckling if they push: a rod in tension does
+        not buckle. None without the data.
         """
         if self.capacity is not None:
             return self.capacity
         area = self.oil_area(pulls)
         by_pressure = self.pressure and area and self.pressure * area
-        if pulls and by_pressure is not None:
+        if pulls:
             return by_pressure
         known = [force for force in (by_pressure, self.buckling_force) if force is not None]
         return min(known, default=None)

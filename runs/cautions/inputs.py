@@ -129,12 +129,13 @@ def cylinders(context: Context) -> Iterator[str]:
     boom = context.boom
     for number, cylinder in enumerate(boom.cylinders, start=1):
         segment = boom.segments[cylinder.segment]
-        if cylinder.depth < 0.0:
+        foot = segment.foot
+        # A cylinder above the boom holds it by pulling at a lug above the axis.
+        if cylinder.depth < 0.0 and not (foot and cylinder.arm(foot) < 0.0):
             yield (
                 f"cylinder[{number}].depth: {cylinder.depth:g} m puts the lug above the axis of "
                 f"{segment.name!r}; usual is below, where depths are positive"
             )
-        foot = segment.foot
         for key, place, name in (
             ("ground", cylinder.ground[0], "the lower end"),
             ("x", -np.inf if foot is None else foot.x, "the foot"),

@@ -299,8 +299,11 @@ def pulling_cylinders(context: Context) -> Iterator[str]:
         cylinder = context.boom.cylinders[int(part.partition(" ")[2] or 1) - 1]
         if (area := cylinder.oil_area(pulls=True)) is not None:
             where = f"on the ring of bore less rod, {system.text(area, 'm^2')}, {where}"
-        pull = amount(-most.value, "N")
-        yield Sentence(f"{part[0].upper()}{part[1:]} pulls with {pull} {where}.")
+        told = f"{part[0].upper()}{part[1:]} pulls with {amount(-most.value, 'N')} {where}."
+        if cylinder.resistance(pulls=True) is None:
+            missing = next(key for key in ("pressure", "bore", "rod") if not getattr(cylinder, key))
+            told += f" The pull is not proved: it has no `{missing}`."
+        yield Sentence(told)
 
 
 def panels(context: Context) -> Iterator[str]:

@@ -9,9 +9,8 @@ the governing utilisation = 1.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cache, cached_property
-from math import acos, atan2, cos, degrees, hypot, radians
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,10 +20,9 @@ from protractile.analysis.quantities import PROVED
 from protractile.analysis.rows import COMBINATION, Row, Rows
 from protractile.analysis.states import States
 from protractile.dynamics.failure import NUMERICAL_ERRORS
-from protractile.geometry.boom import Boom, BoomError, Segment
+from protractile.geometry.boom import Boom, BoomError
 from protractile.geometry.ground import force_name
 from protractile.geometry.typography import percent
-from protractile.runs.case.actions import head_of
 from protractile.runs.case.build import build_boom, telescoped_joints
 from protractile.runs.case.combination_tables import (
     LoadCaseTable,
@@ -39,7 +37,7 @@ from protractile.runs.pipeline.beam_states import static_states
 from protractile.runs.pipeline.combinations import CombinationState, combination_states
 from protractile.runs.pipeline.proofs import proofs_of
 from protractile.runs.pipeline.statics import boom_with_play
-from protractile.runs.pipeline.tipping import foot_of, hook_place
+from protractile.runs.pipeline.tipping import LuffedPoint, hook_point, luffed_point
 
 # Deviation of the radius in m at which the luffing angle is found, most steps to find it, and most
 # proofs that are followed to a capacity.
@@ -58,7 +56,7 @@ class Configuration(NamedTuple):
     """Extensions of the joints of a boom."""
 
     extension: Mapping[str, float]  #: extension in m by inner segment
-    length: float  #: length in m from the foot pin to the tip
+    length: float  #: length in m from the foot pin to the tip, along the boom
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,9 +125,9 @@ class Search:
     slope: float = -1.0
 
     @cached_property
-    def last_segment(self) -> Segment:
-        """The last segment of the boom, with the head."""
-        return build_boom(self.case).segments[-1]
+    def boom(self) -> Boom:
+        """The boom with the extensions of the case."""
+        return build_boom(self.case)
 
     def cell(self, near: Cell | None = None) -> Cell:
         """Return the cell; the search begins at the capacity of a cell ``near``, if it is given."""
@@ -160,8 +158,8 @@ class Search:
         table, states = self.points[capacity]
         assert table.angle is not None
         tip, name = _tip(states), force_name(1)
-        radius, height = hook_place(self.case, states.boom, table.angle, tip)
-        straight, _ = hook_place(self.case, states.boom, table.angle, 0.0)
+        radius, height = hook_point(self.case, states.boom, tip).at(table.angle)
+        straight, _ = hook_point(self.case, states.boom).at(table.angle)
         force = float(max(states.observed(name), key=abs)) if states.boom.cylinders else None
         return Cell(
             self.configuration, self.radius if self.angle is None else radius, capacity, reason,
@@ -254,7 +252,7 @@ class Search:
             table, states = self._rated(payload, guess)
             assert table.angle is not None
             found = _tip(states)
-            reached, _ = hook_place(self.case, states.boom, table.angle, found)
+            reached, _ = hook_point(self.case, states.boom, found).at(table.angle)
             if self.angle is not None or abs(reached - self.radius) < _RADIUS:
                 self.points[payload], self.tips[payload] = (table, states), found
                 return table, states
@@ -296,26 +294,19 @@ class Search:
         """
         if self.angle is not None:
             return self.angle
-        chassis, head, length = self.case.chassis, head_of(self.case), self.configuration.length
-        ahead = chassis.foot_ahead if chassis else 0.0
-        if head is not None:
-            ahead += head.level.front if head.level else 0.0
-            head = replace(head, level=None).in_boom_axes(self.last_segment, 0.0)
-            length, tip = length + head.ahead, tip - head.below
-        ratio = (self.radius - ahead) / hypot(length, tip)
-        angle = degrees(acos(ratio) - atan2(tip, length)) if abs(ratio) <= 1.0 else -1.0
+        angle = hook_of(self.case, self.boom, self.configuration, tip).angle(self.radius)
         least, most = chart_of(self.case).angles
-        if not least <= angle <= most:
+        if angle is None or not least <= angle <= most:
             raise NoCapacityError(OUT_OF_REACH)
         return angle
 
 
 def solve(case: Case, configuration: Configuration) -> list[Cell]:
     """Return the cells of a configuration at all radii or luffing angles of the chart."""
-    chart, foot = chart_of(case), case.chassis.foot_ahead if case.chassis else 0.0
+    chart = chart_of(case)
     searches = [Search(case, configuration, radius) for radius in chart.radii]
     for angle in chart.luffing:
-        straight = foot + configuration.length * cos(radians(angle))
+        straight, _ = hook_of(case, build_boom(case), configuration).at(angle)
         searches.append(Search(case, configuration, straight, angle))
     cells: list[Cell] = []
     near = None
@@ -362,7 +353,8 @@ def configurations(case: Case, boom: Boom) -> Iterator[Configuration]:
     Raises:
         ValueError: a length is not between that of the retracted boom and that of the case.
     """
-    chart, shortest = chart_of(case), boom.tip - foot_of(boom) - sum(_extensions(case).values())
+    chart, length = chart_of(case), luffed_point(case, boom, boom.tip, 0.0).along
+    shortest = length - sum(_extensions(case).values())
     for extension in chart.extensions or ([] if chart.lengths else [{}]):
         own = _extensions(combine(case, load_case_of(case, 0.0, extension, 0.0)))
         yield Configuration(extension, shortest + sum(own.values()))
@@ -377,6 +369,15 @@ def configurations(case: Case, boom: Boom) -> Iterator[Configuration]:
             )
         part = min(max(0.0, (length - least) / (most - least or 1.0)), 1.0)
         yield Configuration(_telescoped(case, part), length)
+
+
+def hook_of(case: Case, boom: Boom, configuration: Configuration, tip: float = 0.0) -> LuffedPoint:
+    """Return the place of the load of a configuration with a tip deflection in m.
+
+    ``boom`` has the extensions of the case.
+    """
+    hook, end = hook_point(case, boom, tip), luffed_point(case, boom, boom.tip, 0.0)
+    return hook._replace(along=hook.along + configuration.length - end.along)
 
 
 def _telescoped(case: Case, part: float) -> dict[str, float]:

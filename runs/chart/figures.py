@@ -10,8 +10,10 @@ from matplotlib import colormaps
 from matplotlib.colors import to_hex
 
 from protractile.geometry.typography import number
+from protractile.runs.case.build import build_boom
 from protractile.runs.chart.cells import Cell, chart_of
 from protractile.runs.chart.run import Chart
+from protractile.runs.pipeline.tipping import luffed_point
 from protractile.runs.report import theme
 from protractile.runs.report.charts import Chart as Plot
 from protractile.runs.report.charts import Curve
@@ -55,18 +57,18 @@ def _over_radius(chart: Chart) -> Figure:
 
 
 def _range(chart: Chart) -> Figure:
-    chassis, (least, most) = chart.case.chassis, chart_of(chart.case).angles
-    x, z = (0.0, 0.0) if chassis is None else (chassis.foot_ahead, chassis.foot_above)
-    turns, curves = np.radians(np.linspace(least, most, 60)), []
+    case, boom = chart.case, build_boom(chart.case)
+    foot, turns = luffed_point(case, boom, 0.0, 0.0), np.linspace(*chart_of(case).angles, 60)
+    tail, curves = foot._replace(along=0.0), []
     for cells, color in zip(chart.cells, _colors(chart), strict=True):
-        length, carrying = cells[0].length, [cell for cell in cells if cell.capacity]
-        arc = x + length * np.cos(turns), z + length * np.sin(turns)
+        tip, carrying = foot._replace(along=cells[0].length), [c for c in cells if c.capacity]
+        arc = np.array([tip.at(turn) for turn in turns]).T
         curves.append(Curve("", arc[1], color, ":", at=arc[0], width=1.0))
         at, heights = np.array([(cell.radius, cell.height) for cell in carrying]).reshape(-1, 2).T
         curves.append(Curve(_name(cells), heights, color, "", at=at, marker="o"))
-    longest = max(cells[0].length for cells in chart.cells)
+    tip = foot._replace(along=max(cells[0].length for cells in chart.cells))
     for turn in turns[[0, -1]]:
-        ends = np.array([[x, z], [x + longest * np.cos(turn), z + longest * np.sin(turn)]])
+        ends = np.array([tail.at(turn), tip.at(turn)])
         curves.append(Curve("", ends[:, 1], theme.FAINT, at=ends[:, 0], width=1.0))
     abscissas = [x for curve in curves if curve.at is not None for x in curve.at.tolist()]
     extent = np.array([min(abscissas), max(abscissas)])

@@ -11,6 +11,7 @@ from typing import Any
 from protractile.analysis.quantities import PROVED
 from protractile.analysis.rows import COMBINATION, Row
 from protractile.geometry.typography import NONE, fixed, join_words, number, percent
+from protractile.runs.case.build import build_boom
 from protractile.runs.case.user_files import check_not_working_folder
 from protractile.runs.cautions.response import TOLD_DEFLECTION, deflection_error
 from protractile.runs.chart.cells import (
@@ -25,6 +26,7 @@ from protractile.runs.chart.cells import (
 )
 from protractile.runs.chart.run import Chart
 from protractile.runs.folder.files import atomic_folder
+from protractile.runs.pipeline.proofs import cylinder_notes
 from protractile.runs.process.bad_input import BadInput
 from protractile.runs.report.proof_tables import holds
 from protractile.runs.report.tables import Column, Table
@@ -122,6 +124,8 @@ def _not_proved(chart: Chart) -> list[str]:
     proved = {row.quantity for cells in chart.cells for cell in cells for row in cell.proofs}
     missing = [PROVED[kind].title for kind in PROVED if kind in requested - proved]
     lines = [f"Not proved, for lack of data: {join_words(missing)}."] if missing and proved else []
+    if "cylinder" in requested and proved:
+        lines += cylinder_notes(build_boom(case))
     if case.chassis is not None and "tipping" not in requested:
         lines.append("Tipping is not proved: no combination of the chart lists `tipping`.")
     return lines

@@ -22,6 +22,7 @@ from protractile.runs.chart.cells import (
     chart_of,
     combined_case,
     configurations,
+    hook_of,
     load_case_of,
     solve,
 )
@@ -136,12 +137,12 @@ def plan(case: Case, file: str) -> list[Configuration]:
                 raise BadInput(file, f"chart.extensions[{number}]", what)
     _check_combinations(case, file)
     try:
-        planned = [*configurations(case, build_boom(case))]
+        boom = build_boom(case)
+        planned = [*configurations(case, boom)]
     except ValueError as error:
         place, _, what = str(error).partition(": ")
         raise BadInput(file, place, case.system.convert(what)) from None
-    longest = max(one.length for one in planned)
-    farthest = longest + (case.chassis.foot_ahead if case.chassis else 0.0)
+    farthest = max(hook_of(case, boom, one).farthest for one in planned)
     for number, radius in enumerate(chart.radii, start=1):
         if radius > farthest:
             what = (

@@ -16,6 +16,7 @@ from protractile.analysis.rows import COMBINATION, Row, Rows
 from protractile.analysis.states import States
 from protractile.beam_model.static_model import estimate_critical_factor
 from protractile.dynamics.failure import NumericsError
+from protractile.geometry.boom import Boom
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.combinations import combine
 from protractile.runs.case.schema import Case
@@ -147,6 +148,25 @@ def _curve_note(case: Case, states: Sequence[CombinationState]) -> Iterator[str]
         )
 
 
+def cylinder_notes(boom: Boom) -> Iterator[str]:
+    """Yield a note on each cylinder whose force is not proved, or not in each respect."""
+    for number, cylinder in enumerate(boom.cylinders, start=1):
+        name = "cylinder" if len(boom.cylinders) == 1 else f"cylinder {number}"
+        missing = [key for key in ("pressure", "bore") if getattr(cylinder, key) is None]
+        if cylinder.resistance() is None:
+            yield f"Force of the {name} is not proved: it has no `capacity`."
+        elif cylinder.capacity is None and missing:
+            yield (
+                f"Oil pressure of the {name} is not proved: it has no `{missing[0]}`. If it "
+                "pushes, only the buckling of its rod is proved; if it pulls, nothing is."
+            )
+        elif cylinder.resistance(pulls=True) is None:
+            yield (
+                f"Buckling of the rod of the {name} is not proved, and if it pulls, nothing is: it "
+                "has no `rod`."
+            )
+
+
 def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Iterator[str]:
     """Yield a note on each kind of proof for which the case has no numbers."""
     first = states[0].states
@@ -162,10 +182,8 @@ def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Itera
     pads = states[0].rows.where(quantity="pad_pressure")
     if "pad" in requested_proofs and boom.joints and all(row.limit is None for row in pads):
         yield "Pad pressure is not proved: no pad has an `allowable_pressure`."
-    if "cylinder" in requested_proofs and any(
-        cylinder.resistance() is None for cylinder in boom.cylinders
-    ):
-        yield "Cylinder force is not proved: a cylinder has no `capacity`."
+    if "cylinder" in requested_proofs:
+        yield from cylinder_notes(boom)
     pins = [segment.foot.pin for segment in boom.segments if segment.foot is not None]
     pins += [cylinder.pin for cylinder in boom.cylinders]
     if "pin" in requested_proofs and not any(pins):

@@ -4,13 +4,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import cos, radians, sin
+from dataclasses import replace
+from math import acos, atan2, cos, degrees, hypot, radians, sin
+from typing import NamedTuple
 
 from protractile.analysis.rows import BEAM, COMBINATION, Row
 from protractile.analysis.states import States
 from protractile.geometry.boom import Boom
 from protractile.geometry.chassis import CraneForce
+from protractile.geometry.cylinder import EarthPoint
+from protractile.geometry.head import Head
 from protractile.geometry.load import Moment, PartialLoad
+from protractile.geometry.support import Support
 from protractile.runs.case.actions import head_of, loads, tip_thrusts
 from protractile.runs.case.combinations import CombinedCase, tip_masses
 from protractile.runs.case.schema import Case
@@ -19,33 +24,62 @@ from protractile.runs.case.schema import Case
 _NO_MOMENT = 1.0e-9
 
 
-def hook_place(case: Case, boom: Boom, angle: float, tip: float) -> tuple[float, float]:
-    """Return radius and height in m of the load at the tip of a boom.
+class LuffedPoint(NamedTuple):
+    """A point that luffs with a boom about its foot pin."""
 
-    They count from the slewing axis and the ground of the chassis, or from the foot pin without
-    chassis.
+    along: float  #: distance in m from the foot pin along the boom
+    up: float  #: distance in m from the foot pin across the boom, upwards
+    #: what does not luff: distance in m ahead of the slewing axis, and height in m above the ground
+    #: of the chassis; both from the foot pin without chassis
+    ahead: float
+    above: float
+
+    @property
+    def farthest(self) -> float:
+        """The largest radius in m at any luffing angle."""
+        return self.ahead + hypot(self.along, self.up)
+
+    def at(self, angle: float) -> tuple[float, float]:
+        """Return radius and height in m at a luffing angle in degrees."""
+        x, z = cos(radians(angle)), sin(radians(angle))
+        return (
+            self.ahead + self.along * x - self.up * z,
+            self.above + self.along * z + self.up * x,
+        )
+
+    def angle(self, radius: float) -> float | None:
+        """Return the luffing angle in degrees at a radius in m; None if it is out of reach."""
+        ratio = (radius - self.ahead) / hypot(self.along, self.up)
+        return degrees(acos(ratio) - atan2(self.up, self.along)) if abs(ratio) <= 1.0 else None
+
+
+def luffed_point(
+    case: Case, boom: Boom, x: float, up: float, head: Head | None = None
+) -> LuffedPoint:
+    """Return a point of a boom from its foot pin, which may lie below or above the axis.
 
     Args:
         case: case with the chassis.
         boom: the boom.
-        angle: luffing angle in degrees.
-        tip: tip deflection in m.
+        x: x of the point in m.
+        up: its distance in m above the axis.
+        head: head of the boom, if the point is where the load hangs.
     """
-    chassis, turn = case.chassis, radians(angle)
-    length = boom.tip - foot_of(boom)
-    if (head := head_of(case)) is not None:
-        head = head.in_boom_axes(boom.segments[-1], turn)
-        length, tip = length + head.ahead, tip - head.below
-    ahead, above = (0.0, 0.0) if chassis is None else (chassis.foot_ahead, chassis.foot_above)
-    return (
-        ahead + length * cos(turn) - tip * sin(turn),
-        above + length * sin(turn) + tip * cos(turn),
+    ahead, above = (
+        (case.chassis.foot_ahead, case.chassis.foot_above) if case.chassis else (0.0, 0.0)
     )
+    if head is not None:
+        level = head.level or EarthPoint(0.0, 0.0)
+        ahead, above = ahead + level.front, above - level.below
+        head = replace(head, level=None).in_boom_axes(boom.segments[-1], 0.0)
+        x, up = x + head.ahead, up - head.below
+    foot = next((one.foot for one in boom.segments if one.foot is not None), Support(0.0))
+    return LuffedPoint(x - foot.x, up + foot.depth, ahead, above)
 
 
-def foot_of(boom: Boom) -> float:
-    """Return the x in m of the foot pin about which the boom luffs."""
-    return next((one.foot.x for one in boom.segments if one.foot is not None), 0.0)
+def hook_point(case: Case, boom: Boom, tip: float = 0.0) -> LuffedPoint:
+    """Return the place of the load of a boom with a tip deflection in m."""
+    return luffed_point(case, boom, boom.tip, tip, head_of(case))
 
 
 def outrigger_rows(combined: CombinedCase, states: States) -> Iterator[Row]:
@@ -89,17 +123,15 @@ def _forces(combined: CombinedCase, states: States) -> Iterator[CraneForce]:
     assert combined.case.gravity is not None
     angle = combined.case.gravity.angle
     along, up = cos(radians(angle)), sin(radians(angle))
-    gravity, foot = case.gravity.acceleration, foot_of(boom)
+    gravity = case.gravity.acceleration
     tip = min(states.observed("tip").tolist())
-    chassis = case.chassis
-    start = (chassis.foot_ahead, chassis.foot_above) if chassis else (0.0, 0.0)
     masses = tip_masses(case, combined.table)
     hung = sum(mass for _, mass in masses)
     moment = sum(segment.mass_moment for segment in boom.segments) - hung * boom.tip
-    centre = moment / (boom.mass - hung) - foot
+    centre = luffed_point(case, boom, moment / (boom.mass - hung), 0.0)
     weight = factors["dead"] * gravity * (boom.mass - hung)
-    yield CraneForce(weight, start[0] + centre * along)
-    radius, above = hook_place(case, boom, angle, tip)
+    yield CraneForce(weight, centre.at(angle)[0])
+    radius, _ = hook_point(case, boom, tip).at(angle)
     for group, hanging in masses:
         yield CraneForce(factors[group] * gravity * hanging, radius)
     acting = combined.case.gravity.model_copy(update={"acceleration": 0.0})
@@ -108,7 +140,7 @@ def _forces(combined: CombinedCase, states: States) -> Iterator[CraneForce]:
     without = {"payload": payload, "hoist": None, "gravity": acting, "base": ()}
     others = combined.case.model_copy(update=without)
     # The moment of a force on the load about the end of the boom is among the loads.
-    radius, above = hook_place(case.model_copy(update={"head": None}), boom, angle, tip)
+    radius, above = luffed_point(case, boom, boom.tip, tip).at(angle)
     for thrust in tip_thrusts(others, boom.segments):
         yield CraneForce(thrust.force * up, radius, -thrust.force * along, above)
     for load in loads(others, boom.segments, boom.joints):
@@ -120,6 +152,6 @@ def _forces(combined: CombinedCase, states: States) -> Iterator[CraneForce]:
             continue
         force = load.resultant(segment.length)
         span = load.span if isinstance(load, PartialLoad) else segment.ends
-        x = (sum(span) / 2.0 if load.x is None else load.x) - foot
-        place = start[0] + x * along, start[1] + x * up
+        x = sum(span) / 2.0 if load.x is None else load.x
+        place = luffed_point(case, boom, x, 0.0).at(angle)
         yield CraneForce(-force * along, place[0], -force * up, place[1])

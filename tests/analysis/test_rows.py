@@ -139,6 +139,22 @@ def test_an_extreme_is_the_first_largest_magnitude(
     assert [*extremes([Measured("tip", "tip", "", np.zeros((0, 1)), None)], "beam", REST)] == []
 
 
+@pytest.mark.parametrize(
+    ("push", "value", "limit"), [(50.0, 50.0, 100.0), (0.0, -80.0, None), (90.0, 90.0, 100.0)]
+)
+def test_a_pull_without_a_limit_hides_no_push(
+    push: float, value: float, limit: float | None
+) -> None:
+    """Reference: by construction. A push of 0 N judges no cylinder that pulls."""
+    both = [
+        Measured("cylinder_force", "cylinder", "", np.array([[force]]), np.zeros(1), limit=most)
+        for force, most in ((push, 100.0), (-80.0, None))
+    ]
+    for order in (both, both[::-1]):
+        (row,) = extremes(order, "beam", REST)
+        assert (row.value, row.limit) == (value, limit)
+
+
 def test_curves_of_any_length_are_one_dataset(tmp_path: Path) -> None:
     """Reference: by construction."""
     curves = Curves(

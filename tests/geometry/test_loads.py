@@ -217,6 +217,9 @@ def test_cylinder_data_give_stiffness_pressure_and_buckling() -> None:
         assert pulling.oil_stiffness(pulls=True) == pytest.approx(1.0 / compliance, rel=1e-12)
     assert jack.resistance(pulls=True) == pytest.approx(2.5e7 * ring, rel=1e-12)
     assert replace(jack, capacity=1e5).resistance(pulls=True) == 1e5
+    # Without pressure a push is limited by buckling, and a pull by nothing that is known.
+    assert replace(jack, pressure=None).resistance() == pytest.approx(buckling, rel=1e-12)
+    assert replace(jack, pressure=None).resistance(pulls=True) is None
     assert replace(jack, spread=0.6).axial_stiffness == pytest.approx(2.0 * stiffness, rel=1e-12)
     for wrong, message in (
         ({"open": 4.5}, "open: 4.5 m, and from ground to lug it is 5 m: the cylinder does not "

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import acos, cos, degrees, hypot, pi, radians, sin
+from math import acos, atan2, cos, degrees, hypot, pi, radians, sin
 from pathlib import Path
 from typing import Any
 
@@ -66,6 +66,13 @@ def rigid(*proofs: str, **chart: Any) -> dict[str, Any]:
         "chart": asked | chart,
         "model": [{"name": "beam", "kind": "finite-element", "theory": "euler-bernoulli"}],
     }
+
+
+def deep(tables: dict[str, Any], depth: float) -> dict[str, Any]:
+    """Return the tables with the foot pin at a depth in m below the axis."""
+    base, *others = tables["segment"]
+    foot = base["supports"][0] | {"depth": depth}
+    return tables | {"segment": [base | {"supports": [foot]}, *others]}
 
 
 def of_three(**chart: Any) -> dict[str, Any]:
@@ -130,16 +137,18 @@ def test_capacity_by_the_pin() -> None:
         assert hypot(force * x, force * z - weight) == pytest.approx(resistance, rel=1.0e-6)
 
 
-def test_capacity_by_tipping() -> None:
+@pytest.mark.parametrize("depth", [0.0, 0.6])
+def test_capacity_by_tipping(depth: float) -> None:
     """Reference: analytic, moments about the nearest tipping line."""
-    found = cells(rigid("tipping") | {"chassis": CHASSIS})
+    found = cells(deep(rigid("tipping") | {"chassis": CHASSIS}, depth))
     assert [cell.reason for cell in found] == ["", "", OUT_OF_REACH, "", "", ""]
     mass, (ahead, behind) = MASS * sum(LENGTHS), (CHASSIS["foot_ahead"], CHASSIS["behind"])
     for cell in (cell for cell in found if not cell.reason):
-        turn, capacities = acos((cell.radius - ahead) / cell.length), {}
+        turn = acos((cell.radius - ahead) / hypot(cell.length, depth)) - atan2(depth, cell.length)
+        axis, capacities = ahead - depth * sin(turn), {}
         for name, side in (("front", 1.0), ("rear", -1.0), ("side", 0.0)):
             line = CHASSIS[name]
-            boom = ahead + moment_of_boom(cell.length) / mass * cos(turn) - line
+            boom = axis + moment_of_boom(cell.length) / mass * cos(turn) - line
             resisting = CHASSIS["mass"] * (line - side * CHASSIS["centre"])
             resisting += CHASSIS["counterweight"] * (line + behind)
             capacities[name] = (resisting - DEAD * mass * boom) / (PAYLOAD * (cell.radius - line))
@@ -179,6 +188,7 @@ def flexible(*proofs: str) -> dict[str, Any]:
 HEAD = {"ahead": 0.5, "below": 0.3, "level": {"front": 0.4, "below": 0.6}}
 
 
+@pytest.mark.parametrize("foot", [0.0, 0.78, -0.2])
 @pytest.mark.parametrize(
     ("others", "pin", "off"),
     [
@@ -187,17 +197,18 @@ HEAD = {"ahead": 0.5, "below": 0.3, "level": {"front": 0.4, "below": 0.6}}
     ],
 )
 def test_the_load_hangs_at_the_radius(
-    others: dict[str, Any], pin: tuple[float, float], off: tuple[float, float]
+    others: dict[str, Any], pin: tuple[float, float], off: tuple[float, float], foot: float
 ) -> None:
     """Reference: analytic, rotation of the straight boom and its deflection. The pin of the head is
-    ahead of and below the tip; the foot and the load off the pin do not turn.
+    ahead of and below the tip, the foot pin below the axis; the foot and the load off the pin of
+    the head do not turn.
     """
-    for cell in cells(flexible() | others, 9.0e5):
+    for cell in cells(deep(flexible() | others, foot), 9.0e5):
         assert cell.tip is not None
         assert cell.angle is not None
         assert cell.tip < -0.02
         x, z = cos(radians(cell.angle)), sin(radians(cell.angle))
-        length, lowered = cell.length + pin[0], pin[1] - cell.tip
+        length, lowered = cell.length + pin[0], pin[1] - cell.tip - foot
         loaded = length * x + lowered * z + off[0], length * z - lowered * x + off[1]
         assert loaded == pytest.approx((cell.radius, cell.height), abs=1.0e-5)
         assert cell.droop == pytest.approx(-cell.tip * z, abs=1.0e-5)
@@ -256,8 +267,9 @@ def test_cells_without_a_governing_proof() -> None:
     assert {cell.reason for cell in cells(windy, 4.0e5)} == {"cylinder force with any payload"}
     # Its radius is that of the straight boom.
     lying = rigid(radii=[], luffing=[60.0], lengths=[14.0]) | {"chassis": CHASSIS}
-    (heavy,) = cells(lying, capacity=0.1)
-    assert (heavy.capacity, heavy.radius) == (None, pytest.approx(14.0 * 0.5 - 0.8))
+    (heavy,) = cells(deep(lying, 0.6), capacity=0.1)
+    radius = 14.0 * 0.5 - 0.6 * sin(pi / 3.0) - 0.8
+    assert (heavy.capacity, heavy.radius) == (None, pytest.approx(radius))
 
 
 def test_the_cylinder_force_is_that_under_the_whole_load() -> None:
@@ -374,6 +386,11 @@ def test_table_page_and_files(tmp_path: Path) -> None:
     table = output.chart_table(chart)
     assert table.headings == ("radius\nm", "9 m", "14 m")
     assert {row[1][-1] for row in table.rows} <= {"L", "M"}
+    assert table.notes[1:] == []
+    jack = replace(case.cylinders[0], capacity=None, bore=0.2, rod=0.1)
+    bare = case.model_copy(update={"cylinders": (jack,)})
+    notes = output.chart_table(run.Chart(bare, chart.cells)).notes
+    assert notes[1].startswith("Oil pressure of the cylinder is not proved: it has no `pressure`.")
     far = replace(chart.cells[1][0], tip=-1.4)
     assert (
         "At 14 m and a radius of 4 m the rated load deflects the tip by 10 % of the boom's length: "

@@ -255,6 +255,9 @@ def test_cylinder_by_its_drawing(tmp_path: Path) -> None:
     ring = f"on the ring of bore less rod, {0.25 * pi * (0.14**2 - 0.1**2):.4g} m²"
     told = f"Cylinder pulls with {amount(-row.value, 'N')} {ring}, under the loads of 'A, people'."
     assert told in printed_check(read_case(tmp_path, text + up + PEOPLE + FACTORS), 200)
+    bare = (text + up + PEOPLE + FACTORS).replace("pressure = 25000000.0\n", "")
+    told += " The pull is not proved: it has no `pressure`."
+    assert told in printed_check(read_case(tmp_path, bare), 250)
     raised = text + table("[luff]", travel=35.0, time=20.0)
     assert refusal(tmp_path, raised).startswith("cylinder[1].open: 2.4 m, and from ground to lug ")
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Proofs of combinations: formulas by hand, the table, the exit status and the report."""
 
+import json
 import re
 from math import pi, sqrt
 from pathlib import Path
@@ -38,7 +39,7 @@ from tests.runs.case_texts import (
     shipped,
     table,
 )
-from tests.runs.test_combinations import CASES, LIFT, by_hand
+from tests.runs.test_combinations import CASES, DEPTH, GROUND, LIFT, LUG, by_hand
 from tests.system.run_folder import protractile
 
 G = 9.80665
@@ -259,6 +260,47 @@ def test_cylinder_and_pins_of_a_lift(tmp_path: Path) -> None:
         "Fatigue strength is not proved: the case has no `[[spectrum]]`.",
         "Static tip deflection is not proved: no combination lists `deflection`.",
     ]
+
+
+@pytest.mark.parametrize(
+    ("ground", "data", "proved", "words"),
+    [
+        (
+            "[0.8, -1.2]",
+            {},
+            True,
+            "Oil pressure of the cylinder is not proved: it has no `pressure`",
+        ),
+        (
+            "[0.8, 1.2]",
+            {},
+            False,
+            "Oil pressure of the cylinder is not proved: it has no `pressure`",
+        ),
+        ("[0.8, 1.2]", {"pressure": 2.5e7}, True, ""),
+        ("[0.8, 1.2]", {"rod": None, "pressure": 2.5e7}, False, "Buckling of the rod of the cyl"),
+        ("[0.8, 1.2]", {"rod": None}, False, "Force of the cylinder is not proved: it has no `cap"),
+        ("[0.8, 1.2]", {"rod": None, "capacity": 3e5}, True, ""),
+    ],
+)
+def test_a_cylinder_without_pressure(
+    tmp_path: Path, ground: str, data: dict[str, float | None], proved: bool, words: str
+) -> None:
+    """Reference: analytic. A push is proved by the buckling of the rod, a pull by the pressure."""
+    keys = {"bore": 0.14, "rod": 0.1} | data
+    given = "".join(f", {key} = {value}" for key, value in keys.items() if value is not None)
+    text = LIFT.replace(str(list(GROUND)), ground).replace("= 3e7 }", f"= 3e7{given} }}")
+    found, proofs = proofs_of(tmp_path, text + CASES + STRONG)
+    assert (("cylinder", "cylinder") in found) == proved
+    notes = [note for note in proofs.notes if "cylinder" in note]
+    assert [note[: len(words)] for note in notes] == [words] * bool(words)
+    if proved and "capacity" not in data:
+        # The boom lies, and its ground is given at 45 degrees.
+        end = complex(*json.loads(ground)) * 1j**0.5
+        away = abs(LUG - DEPTH * 1j - end) ** 2
+        buckling = pi**3 * 2.1e11 * 0.1**4 / 64.0 / away
+        limit = 2.5e7 * 0.25 * pi * (0.14**2 - 0.1**2) if data else buckling
+        assert found["cylinder", "cylinder"].limit == pytest.approx(limit / 1.2, rel=1e-9)
 
 
 def test_a_slender_column_buckles(tmp_path: Path) -> None:

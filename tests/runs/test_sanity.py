@@ -141,6 +141,8 @@ def cautions_of(folder: Path, text: str) -> list[str]:
         ("[0.7, -1.1]", "[4.1, -1.1]", "cylinder[1].ground: the lower end at x = 4.1 m is … "),
         ("supports = [{ x = 0.0", "supports = [{ x = 3.0", "cylinder[1].x: the foot at x = 3 m … "),
         ("depth = 0.25", "depth = -0.25", "cylinder[1].depth: -0.25 m puts the lug above the … "),
+        # A cylinder above the boom, which pulls.
+        ("depth = 0.25, ground = [0.7, -1.1]", "depth = -0.25, ground = [0.7, 1.1]", ""),
         ('state = "equilibrium"', 'state = "rest"', "start.state: the boom starts straight and … "),
         ("play = 0.003", "play = 0.03", "joint[1].play: … 0.018 m; if it is in cm, give 0.0003 m\n"
          "joint[1].pad.thickness: pads … "),
@@ -157,7 +159,7 @@ def cautions_of(folder: Path, text: str) -> list[str]:
 def test_unusual_numbers_give_cautions(tmp_path: Path, old: str, new: str, line: str) -> None:
     """Reference: exact words around an omission, of the only cautions."""
     found = cautions_of(tmp_path, edited(LIFT, (old, new)))
-    parts = [one.partition(" … ") for one in line.split("\n")]
+    parts = [one.partition(" … ") for one in line.splitlines()]
     shown = [
         (one.removeprefix("caution: ")[: len(start)], one[len(one) - len(end) :])
         for one, (start, _, end) in zip(found, parts, strict=True)
