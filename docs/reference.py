@@ -13,7 +13,7 @@ from protractile.runs import cli
 from protractile.runs.case.schema import Case, case_schema
 
 SCHEMA = case_schema()
-#: Tables of which [joints] and based_on do not take keys.
+#: Tables of which [joints], [segments] and based_on do not take keys.
 WHOLE = Case.model_json_schema()["$defs"]
 FOLDER = Path(__file__).parent / "generated"
 #: Drawings for the tables that they explain.

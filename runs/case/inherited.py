@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Keys that tables of a case file take from others: from ``[joints]``, or by ``based_on``."""
+"""Keys that tables of a case file take from ``[segments]`` and ``[joints]``, or by ``based_on``."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ from protractile.geometry.fields import format_value
 from protractile.runs.process.bad_input import BadInput
 
 # Tables whose keys are taken one by one, and keys that replace one another.
-_BY_KEY = ("pad", "factors", "resistance")
-_INSTEAD = {"pad": "pads", "pads": "pad", "stroke": "extension", "extension": "stroke"}
+_BY_KEY = ("pad", "material", "factors", "resistance")
+_PAIRS = ("pad", "pads"), ("stroke", "extension"), ("span", "length")
+_INSTEAD = {key: other for pair in _PAIRS for key, other in (pair, pair[::-1])}
 
 
 def with_inherited_keys(tables: Mapping[str, Any], file: str) -> dict[str, Any]:
-    """Return the tables of a case file with the keys that joints and named tables take.
+    """Return the tables of a case file with the keys that parts and named tables take.
 
     >>> with_inherited_keys({"joints": {"play": 0.002}, "joint": [{"inner": "fly"}]}, "case")
     {'joint': [{'play': 0.002, 'inner': 'fly'}]}
@@ -26,10 +27,11 @@ def with_inherited_keys(tables: Mapping[str, Any], file: str) -> dict[str, Any]:
         BadInput: a table is based on none before it.
     """
     plain = dict(tables)
-    joints = _tables(plain.get("joint"))
-    if joints and isinstance(plain.get("joints"), Mapping):
-        common = plain.pop("joints")
-        plain["joint"] = [_over(joint, common) for joint in joints]
+    for key in ("segment", "joint"):
+        parts = _tables(plain.get(key))
+        if parts and isinstance(plain.get(f"{key}s"), Mapping):
+            common = plain.pop(f"{key}s")
+            plain[key] = [_over(part, common) for part in parts]
     for key in ("load_case", "combination"):
         done: list[Mapping[str, Any]] = []
         for table in _tables(plain.get(key)):
@@ -48,10 +50,16 @@ def with_inherited_keys(tables: Mapping[str, Any], file: str) -> dict[str, Any]:
 def schema_of_file(schema: dict[str, Any]) -> dict[str, Any]:
     """Return the JSON Schema of a case file, by that of its tables with all keys."""
     tables, keys = schema["$defs"], schema["properties"]
-    common = "the table of keys that hold for each joint without them, also single ones of pad"
-    keys["joints"] = {"$ref": "#/$defs/JointTable", "description": common}
-    keys["joint"]["items"]["required"] = ["outer", "inner"]
-    del tables["JointTable"]["required"], tables["Pad"]["required"]
+    for key, name, inner, required in (
+        ("segment", "SegmentTable", "material", ["name"]),
+        ("joint", "JointTable", "pad", ["outer", "inner"]),
+    ):
+        common = f"the table of keys that hold for each {key} without them, also single ones of "
+        keys[f"{key}s"] = {"$ref": f"#/$defs/{name}", "description": common + inner}
+        keys[key]["items"]["required"] = required
+        del tables[name]["required"]
+    keys["material"]["required"] = tables["Material"].pop("required")
+    del tables["Pad"]["required"]
     based_on = "the name of one before it, whose keys hold unless given, also single factors"
     for name in ("LoadCaseTable", "CombinationTable"):
         tables[name]["properties"]["based_on"] = {"type": "string", "description": based_on}

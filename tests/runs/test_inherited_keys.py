@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Keys that tables take from [joints] or by based_on, and what a case may leave out."""
+"""Keys that tables take from [joints], [segments] or by based_on, and what a case may leave out."""
 
 import tomllib
+from operator import add
 from pathlib import Path
 
 import jsonschema
@@ -49,6 +50,24 @@ def test_joints_have_the_keys_that_they_leave_out(tmp_path: Path, short: str, lo
     text = BOOM + elements("second", theory="timoshenko")
     jsonschema.validate(tomllib.loads(text + short), case_schema())
     assert read_case(tmp_path, text + short) == read_case(tmp_path, text + long)
+
+
+def test_segments_have_the_keys_that_they_leave_out(tmp_path: Path) -> None:
+    """Reference: other input, each segment with all of its keys."""
+    text = BOOM + table("[[joint]]", **FLY, **ENDS, extension=4.0, pad=PAD)
+    text += table("[[joint]]", **LAST, **ENDS, extension=4.0, pad=PAD)
+    steel: dict[str, object] = {"youngs_modulus": 2.1e11, "poissons_ratio": 0.3, "density": 7850.0}
+    common = {"added_mass_per_length": 6.0, "material": steel}
+    own = [{"added_mass_per_length": "14 kg/m"}, {"material": {"yield_strength": 9e8}}, {}]
+    whole = [common | own[0], common | {"material": steel | own[1]["material"]}, common]
+    first, *others = text.split("[[segment]]")
+    cases = []
+    for several, more in ((own, table("[segments]", **common, span=[0.0, 9.0])), (whole, "")):
+        parts = (table("[[segment]]", **keys) for keys in several)
+        edited = first + "".join(map(add, parts, others)) + more
+        jsonschema.validate(tomllib.loads(edited), case_schema())
+        cases.append(read_case(tmp_path, edited))
+    assert cases[0] == cases[1]
 
 
 def test_a_table_based_on_another_has_its_other_keys(tmp_path: Path) -> None:
@@ -109,6 +128,7 @@ def test_statics_need_neither_duration_nor_model(tmp_path: Path) -> None:
         (PEOPLE + table("[[load_case]]", name="low", based_on=["people"]),
          "load_case[2].based_on: must be the name of a load_case before it, got ['people']"),
         (table("[joints]", colour=1), "joint[1].colour: unknown key; known ones are "),
+        (table("[segments]", colour=1), "segment[1].colour: unknown key; the nearest"),
         (table("[[joints]]", play=1.0), "joints: unknown key; the nearest known one is joint"),
     ],
 )  # fmt: skip
