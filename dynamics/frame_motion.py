@@ -2,10 +2,12 @@
 """Slewing and luffing: inertia forces in the frame that rotates with the boom.
 
 The frame rotates by the slewing angle ψ about the vertical, and by the luffing angle α about the
-foot of the boom. With the extension s, a point of the boom is ξ = x − x_foot + s from the foot, and
-r = r_0 + ξ cos α from the slewing axis. The accelerations of the point
+foot of the boom. With the extension s, a point of the boom is ξ = x − x_foot + s ahead of the foot
+pin along the axis, d above it, the depth of the pin, and r = r_0 + ξ cos α − d sin α from the
+slewing axis. The accelerations of the point
 
-    a_x = s̈ − ξ α̇² − ψ̇² r cos α,    a_y = r ψ̈ + 2 ψ̇ ṙ,    a_z = ξ α̈ + 2 ṡ α̇ + ψ̇² r sin α
+    a_x = s̈ − ξ α̇² − d α̈ − ψ̇² r cos α,             a_y = r ψ̈ + 2 ψ̇ ṙ,
+    a_z = ξ α̈ + 2 ṡ α̇ − d α̇² + ψ̇² r sin α
 
 are along x, y and z of the boom (Goldstein 1980). A mass has the inertia force of opposite sign.
 The effect of deflections on accelerations is neglected.
@@ -35,6 +37,7 @@ class FrameMotion:
     luff: MotionLaw = _RESTING  #: change of the luffing angle in degrees over time
     angle: float = 0.0  #: luffing angle at t = 0 in degrees
     foot: float = 0.0  #: x of the foot in m
+    depth: float = 0.0  #: depth d in m of the foot pin below the axis
     #: horizontal distance r_0 in m of the foot from the slewing axis, positive outwards
     radius: float = 0.0
     gravity: float = 0.0  #: acceleration of gravity in m/s²; 0 without weight
@@ -54,18 +57,24 @@ class FrameMotion:
         Arguments as in :meth:`accelerations`.
         """
         along, luffed = x - self.foot + extension(time), self.luff_angle(time)
-        return self.radius + along * np.cos(luffed), along * np.sin(luffed)
+        cosine, sine = np.cos(luffed), np.sin(luffed)
+        return (
+            self.radius + along * cosine - self.depth * sine,
+            along * sine + self.depth * cosine,
+        )
 
     def drive_moments(self, time: Array, x: float, mass: float, extension: MotionLaw) -> Array:
         """Return the slewing and the luffing moment (2, ...) in N·m that move a mass m in kg.
 
-        They are m r a_y about the slewing axis, and m ξ (a_z + g cos α) about the foot. The other
-        arguments are as in :meth:`accelerations`.
+        They are m r a_y about the slewing axis, and m ξ (a_z + g cos α) − m d (a_x + g sin α) about
+        the foot pin. The other arguments are as in :meth:`accelerations`.
         """
-        _, lateral, across = self.accelerations(time, x, extension)
-        along, luffed = x - self.foot + extension(time), np.cos(self.luff_angle(time))
-        slewing = (self.radius + along * luffed) * lateral
-        return mass * np.array([slewing, along * (across + self.gravity * luffed)])
+        axial, lateral, across = self.accelerations(time, x, extension)
+        along, luffed = x - self.foot + extension(time), self.luff_angle(time)
+        radius, _ = self.position(time, x, extension)
+        luffing = along * (across + self.gravity * np.cos(luffed))
+        luffing = luffing - self.depth * (axial + self.gravity * np.sin(luffed))
+        return mass * np.array([radius * lateral, luffing])
 
     def accelerations(self, time: Array, x: float, extension: MotionLaw) -> Array:
         """Return a_x, a_y and a_z (3, ...) in m/s² of a point of the boom.
@@ -77,14 +86,17 @@ class FrameMotion:
         """
         along, speed = x - self.foot + extension(time), extension.rate(time, 1)
         luffed, turn, faster = (self.luff_angle(time, order) for order in range(3))
-        cosine, sine = np.cos(luffed), np.sin(luffed)
-        radius, slew = self.radius + along * cosine, self.slew_angle(time, 1)
-        out = speed * cosine - along * sine * turn
+        cosine, sine, depth = np.cos(luffed), np.sin(luffed), self.depth
+        (radius, height), slew = self.position(time, x, extension), self.slew_angle(time, 1)
+        out = speed * cosine - height * turn
         return np.array(
             np.broadcast_arrays(
-                extension.rate(time, 2) - along * turn**2 - slew**2 * radius * cosine,
+                extension.rate(time, 2)
+                - along * turn**2
+                - depth * faster
+                - slew**2 * radius * cosine,
                 radius * self.slew_angle(time, 2) + 2.0 * slew * out,
-                along * faster + 2.0 * speed * turn + slew**2 * radius * sine,
+                along * faster + 2.0 * speed * turn - depth * turn**2 + slew**2 * radius * sine,
             )
         )
 

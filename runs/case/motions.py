@@ -70,6 +70,7 @@ def frame_motion(case: Case, segments: Sequence[Segment]) -> FrameMotion:
         **histories,
         angle=gravity.angle,
         foot=segments[0].start if foot is None else foot.x,
+        depth=0.0 if foot is None else foot.depth,
         radius=0.0 if case.slew is None else case.slew.radius,
         gravity=gravity.acceleration,
     )

@@ -70,7 +70,7 @@ class Cell:
     reason: str = ""  #: why there is no larger capacity; empty if the governing proof limits it
     angle: float | None = None  #: luffing angle in degrees
     height: float | None = None  #: height of the tip in m
-    tip: float | None = None  #: tip deflection in m under the rated load
+    tip: float | None = None  #: tip deflection in m under the rated load and the wind, factors 1
     droop: float | None = None  #: increase of the radius in m by the tip deflection
     #: largest force of the first cylinder in N under the rated load
     cylinder_force: float | None = None

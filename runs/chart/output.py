@@ -151,7 +151,9 @@ def proof_table(cell: Cell) -> Table:
         about += f"; the cylinder carries {number(1.0e-3 * cell.cylinder_force)} kN"
     title = f"{number(cell.length)} m at {number(cell.radius)} m: {number(cell.capacity, 5)} kg"
     headings = "proof", "place", "combination", "utilisation"
-    return Table.of_rows("cell", title, headings, rows, [f"Under the rated load: {about}."])
+    return Table.of_rows(
+        "cell", title, headings, rows, [f"Under the rated load and the wind: {about}."]
+    )
 
 
 def prepare(folder: Path, file: str) -> None:

@@ -52,6 +52,7 @@ class Chart(NamedTuple):
         rows = []
         for cell in (cell for several in self.cells for cell in several):
             found = cell.governing
+            judged = [row.value for row in cell.proofs if row.quantity == "deflection"]
             rows.append(
                 {
                     "length, m": cell.length,
@@ -65,6 +66,7 @@ class Chart(NamedTuple):
                     "luffing angle, deg": cell.angle,
                     "tip height, m": cell.height,
                     "tip deflection, m": cell.tip,
+                    "proved tip deflection, m": judged[0] if judged else None,
                     "droop of the radius, m": cell.droop,
                     "cylinder force, N": cell.cylinder_force,
                 }

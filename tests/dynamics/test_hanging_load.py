@@ -80,7 +80,7 @@ def test_load_under_a_boom_at_constant_slewing_speed() -> None:
 
 def test_load_swings_during_slewing_and_luffing() -> None:
     """Reference: other code, scipy's DOP853 with Coriolis, Euler and centrifugal terms. Order 2."""
-    frame = FrameMotion(SCurve(80.0, 2.0), Stroke(-20.0, 15.0, 0.5), 50.0, 0.5, -1.0)
+    frame = FrameMotion(SCurve(80.0, 2.0), Stroke(-20.0, 15.0, 0.5), 50.0, 0.5, 0.3, -1.0)
     place, out, length = 9.0, SCurve(1.0, 2.0), 3.0
     wind = Ramp(0.5)
     swing = Pendulum(length, frame, place, out, [("y", 300.0, wind)])
@@ -160,11 +160,12 @@ def test_rates(law: MotionLaw) -> None:
     assert law.rate(time, 2) == pytest.approx((after - 2.0 * now + before) / h**2, abs=1e-4)
 
 
-def test_accelerations() -> None:
+@pytest.mark.parametrize("depth", [0.0, 0.6])
+def test_accelerations(depth: float) -> None:
     """Reference: second differences of the position in fixed axes, with both angles; analytic for
     the components of the weight.
     """
-    frame = FrameMotion(LAWS[0], LAWS[1], 35.0, foot=0.5, radius=-1.2)
+    frame = FrameMotion(LAWS[0], LAWS[1], 35.0, foot=0.5, depth=depth, radius=-1.2)
     extension, x, h = SCurve(2.0, 2.5), 9.0, 1.0e-4
     time = TIME[np.abs(np.subtract.outer(TIME, np.array(LAWS[1].kinks))).min(axis=1) > h]
 
@@ -172,6 +173,9 @@ def test_accelerations() -> None:
         (out, up), turn = frame.position(time, x, extension), frame.slew_angle(time)
         return np.array([out * np.cos(turn), out * np.sin(turn), up])
 
+    start = frame.position(np.zeros(1), x, extension)
+    turned = complex(8.5, depth) * np.exp(1j * np.deg2rad(35.0))
+    assert np.concatenate(start) == pytest.approx([turned.real - 1.2, turned.imag])
     places = [position(time + shift) for shift in (-h, 0.0, h)]
     one, two, three = (places[2] - 2.0 * places[1] + places[0]) / h**2
     slew, luff = frame.slew_angle(time), frame.luff_angle(time)
@@ -189,3 +193,25 @@ def test_accelerations() -> None:
         change = 10.0 * (function(np.deg2rad(70.0)) - function(np.deg2rad(20.0)))
         history = FrameAcceleration(frame, direction, 3.0)
         assert history(np.array([0.0, 2.0])) == pytest.approx([0.0, change])
+
+
+@pytest.mark.parametrize("depth", [0.0, 0.6])
+def test_drives_do_the_work_of_a_mass_on_the_boom(depth: float) -> None:
+    """Reference: the change of kinetic and potential energy over their power, by differences."""
+    frame = FrameMotion(LAWS[0], LAWS[1], 35.0, 0.5, depth, -1.2, gravity=10.0)
+    resting, x, h = HistorySum(()), 9.0, 1.0e-4
+    kinks = np.array([*LAWS[0].kinks, *LAWS[1].kinks])
+    time = TIME[np.abs(np.subtract.outer(TIME, kinks)).min(axis=1) > 3.0 * h]
+
+    def energy(at: Array) -> Array:
+        def place(at: Array) -> Array:
+            (out, up), turn = frame.position(at, x, resting), frame.slew_angle(at)
+            return np.array([out * np.cos(turn), out * np.sin(turn), up])
+
+        speed = (place(at + h) - place(at - h)) / (2.0 * h)
+        return 3.0 * (0.5 * (speed**2).sum(axis=0) + 10.0 * place(at)[2])
+
+    rates = frame.slew_angle(time, 1), frame.luff_angle(time, 1)
+    power = (frame.drive_moments(time, x, 3.0, resting) * np.array(rates)).sum(axis=0)
+    change = (energy(time + h) - energy(time - h)) / (2.0 * h)
+    assert power == pytest.approx(change, abs=1.0e-4)

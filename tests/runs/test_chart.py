@@ -214,6 +214,19 @@ def test_the_load_hangs_at_the_radius(
         assert cell.droop == pytest.approx(-cell.tip * z, abs=1.0e-5)
 
 
+def test_the_proved_tip_deflection_is_that_of_its_combination() -> None:
+    """Reference: the limit, which the combination without wind meets at the capacity."""
+    limit = 0.08
+    tables = flexible("deflection") | {"limits": {"tip_at_rest": limit}}
+    tables |= {"wind": {"pressure": 200.0, "shape_factor": 1.5, "direction": "front"}}
+    tables["combination"][0]["factors"] = {"dead": 1.0, "payload": 1.0, "wind": 0.0}
+    case = pt.load_case(tables)
+    (several,) = (solve(case, one) for one in run.plan(case, "case"))
+    frame = run.Chart(case, [several]).frame
+    assert frame["proved tip deflection, m"].values == pytest.approx(limit, rel=1.0e-5)
+    assert (abs(frame["tip deflection, m"].values + limit) > 0.001).all()
+
+
 def test_rows_by_luffing_angle_have_the_capacities_at_their_radii() -> None:
     """Reference: the cells by radius, at the radii of the loaded tip."""
     tables = flexible()
