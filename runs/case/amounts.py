@@ -21,6 +21,7 @@ from protractile.runs.case.limits import (
     is_table,
     key_of,
     map_tables,
+    share_of,
     tables_in,
     units_of,
 )
@@ -74,6 +75,8 @@ def read_amounts(tables: Mapping[str, Any], file: str) -> tuple[dict[str, Any], 
         """Return a value with numbers; ``inside`` are the classes that its table may have."""
         if isinstance(item, list):
             return [read(part, (*steps, i), inside, units) for i, part in enumerate(item)]
+        if steps == ("limits", "tip_at_rest") and share_of(item) is not None:
+            return item
         if isinstance(item, str):
             plain = units or not PLAIN_NUMBER_KEYS.keys().isdisjoint(inside)
             return number(item, steps, units) if plain else item
