@@ -362,7 +362,8 @@ def configurations(case: Case, boom: Boom) -> Iterator[Configuration]:
         ValueError: a length is not between that of the retracted boom and that of the case.
     """
     chart, shortest = chart_of(case), boom.tip - foot_of(boom) - sum(_extensions(case).values())
-    for extension in chart.extensions or ([] if chart.lengths else [{}]):
+    extensions = [*chart.extensions, *(_telescoped(case, part) for part in chart.telescoped)]
+    for extension in extensions or ([] if chart.lengths else [{}]):
         own = _extensions(combine(case, load_case_of(case, 0.0, extension, 0.0)))
         yield Configuration(extension, shortest + sum(own.values()))
     if not chart.lengths:
