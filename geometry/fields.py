@@ -177,10 +177,10 @@ VALID_INPUT = {
     "less_than_equal": "a number not greater than {le:g}",
     "literal_error": "{expected}",
     "tuple_type": "a list",
-    "place": "a number of m, 'tail', 'head' or a distance in m from one of them such as "
-    "{{ tail = 0.2 }}",
-    "depth": "a number of m below the axis, or a distance in m from an outer surface such as "
-    "{{ bottom = 0.2 }}",
+    "place": "a number of {m}, 'tail', 'head' or a distance in {m} from one of them such as "
+    "{{ tail = {near} }}",
+    "depth": "a number of {m} below the axis, or a distance in {m} from an outer surface such as "
+    "{{ bottom = {near} }}",
     "ground": "a list of two numbers, or a table of two such as {{ front = 0.7, below = 1.1 }}",
     "modes": "a whole number above 0, or 'auto'",
     "contact_tolerance": "a number from {least} to below 1, or 'any'",

@@ -75,6 +75,10 @@ class _Position:
             return float(value)
         distances = {value: 0.0} if value in self.alone else value
         if isinstance(distances, Mapping) and len(distances) == 1:
+            ((end, number),) = distances.items()
+            if end in self.alone and is_finite(number) and number < 0.0:
+                what = f"the distance from the {end} must not be negative, got {number:g}"
+                raise PydanticCustomError("unsuitable", "{what}", {"what": what})
             with suppress(BoomError):
                 return self.distance(**distances)
         raise PydanticCustomError(self.fault, "a position")

@@ -21,6 +21,7 @@ from protractile.runs.case.limits import (
     is_table,
     key_of,
     map_tables,
+    share_of,
     tables_in,
     units_of,
 )
@@ -36,6 +37,20 @@ class Amount(NamedTuple):
     unit: Unit  #: the unit
 
 
+# Expected quantities in messages, by their units.
+_QUANTITIES = {
+    "m": "a length", "kg": "a mass", "s": "a time", "N": "a force", "m/s": "a speed",
+    "Pa": "a pressure or stress", "deg": "an angle",
+}  # fmt: skip
+
+
+def system_of(tables: Mapping[str, Any]) -> System:
+    """Return the system of units of a case file; SI in place of an unknown one."""
+    # Another name is refused afterwards.
+    known = (name for name in get_args(SystemName) if name == tables.get("units"))
+    return System(next(known, "SI"))
+
+
 def read_amounts(tables: Mapping[str, Any], file: str) -> tuple[dict[str, Any], list[Amount]]:
     """Return the tables of a case file with numbers in the units of the case, and the texts.
 
@@ -46,9 +61,7 @@ def read_amounts(tables: Mapping[str, Any], file: str) -> tuple[dict[str, Any], 
         BadInput: a unit is unknown, missing, or of another quantity than its key always has.
     """
     amounts: list[Amount] = []
-    # Another name is refused afterwards.
-    known = (name for name in get_args(SystemName) if name == tables.get("units"))
-    system = System(next(known, "SI"))
+    system = system_of(tables)
 
     def number(text: str, steps: Steps, units: Sequence[str]) -> Any:
         if (match := re.fullmatch(AMOUNT, text)) is None:
@@ -62,8 +75,10 @@ def read_amounts(tables: Mapping[str, Any], file: str) -> tuple[dict[str, Any], 
             size = Fraction(repr(unit.factor)) / system.size(f"m^{length:g} kg^{mass:g}")
             value = Fraction(match[1]) * size
         except (ValueError, ArithmeticError):
-            what = f"must have a known unit such as mm, kg, kN or MPa, got {format_value(text)}"
-            raise BadInput(file, key_of(steps), what) from None
+            what = "must have a known unit such as mm, kg, kN or MPa"
+            if re.search(r"[\s+*×x]\s*\d", match[2]):
+                what = "must be one number with one unit"
+            raise BadInput(file, key_of(steps), f"{what}, got {format_value(text)}") from None
         amounts.append(Amount(steps, text, unit))
         # The limits of a key hold in its unit. Several units are checked after the limits.
         if len(units) == 1 and not re.search(r"\^\(?n", units[0]):
@@ -74,6 +89,8 @@ def read_amounts(tables: Mapping[str, Any], file: str) -> tuple[dict[str, Any], 
         """Return a value with numbers; ``inside`` are the classes that its table may have."""
         if isinstance(item, list):
             return [read(part, (*steps, i), inside, units) for i, part in enumerate(item)]
+        if steps == ("limits", "tip_at_rest") and share_of(item) is not None:
+            return item
         if isinstance(item, str):
             plain = units or not PLAIN_NUMBER_KEYS.keys().isdisjoint(inside)
             return number(item, steps, units) if plain else item
@@ -115,8 +132,10 @@ def _check_unit(amount: Amount, expected: str, system: System, file: str) -> Non
     angles = [set(re.findall("deg|rad|°", one)) for one in (expected, text.replace("°", "deg"))]
     if unit.dimension != Unit.of(expected).dimension or angles[0] != angles[1]:
         name = "%" if expected == "1" else system.unit(expected)
-        what = f"must be in {name} or another unit of the kind, got {format_value(text)}"
-        raise BadInput(file, key_of(steps), what)
+        what = f"in {name} or another unit of the kind"
+        if expected in _QUANTITIES:
+            what = f"{_QUANTITIES[expected]}, such as in {name}"
+        raise BadInput(file, key_of(steps), f"must be {what}, got {format_value(text)}")
 
 
 def innermost(steps: Steps, case: Case) -> tuple[Any, str]:

@@ -3,15 +3,25 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import reduce
-from typing import Annotated, Any, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, get_args
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PlainSerializer,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+)
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from protractile.geometry.fields import PART, In, declared_units, fields_of, names_of
+from protractile.geometry.fields import PART, In, Positive, declared_units, fields_of, names_of
 
 
 class CaseTable(BaseModel):
@@ -190,3 +200,59 @@ ContactTolerance = Annotated[
     In("1"),
     BeforeValidator(_check_contact_tolerance, json_schema_input_type=Part | Literal["any"]),
 ]
+
+
+def share_of(value: Any) -> float | None:
+    """Return the number of a text in percent such as ``2 %``; None for any other value."""
+    text = value if isinstance(value, str) else ""
+    share = re.fullmatch(r"\s*([+-]?\d*\.?\d+)\s*%\s*", text)
+    return share and 0.01 * float(share[1])
+
+
+def _check_length_or_share(value: Any, check: ValidatorFunctionWrapHandler) -> Any:
+    """Check a length, or the number of a share. A union type would give two messages."""
+    share = share_of(value)
+    return check(value) if share is None else check(share) and value
+
+
+if TYPE_CHECKING:
+    LengthOrShare = float | str
+else:
+    LengthOrShare = Annotated[
+        Positive,
+        In("m"),
+        WrapValidator(_check_length_or_share),
+        PlainSerializer(lambda value: value),
+    ]
+
+
+class LimitsTable(CaseTable):
+    """Limits of results; the exit status of a run is 1 if its leading model exceeds one."""
+
+    tip: Annotated[Positive, In("m")] | None = None
+    """the largest permitted tip deflection in m, of the motion"""
+    tip_at_rest: LengthOrShare | None = None
+    """the largest permitted static tip deflection in m, or as text such as '2 %' its share of the
+    length from the foot to the tip, in each load case that of its boom"""
+    tip_lateral: Annotated[Positive, In("m")] | None = None
+    """the largest permitted lateral tip deflection in m, of the motion; only in space"""
+    stress: Annotated[Positive, In("Pa")] | None = None
+    """the largest permitted bending stress in Pa, axial in outer fibres"""
+    wall_stress: Annotated[Positive, In("Pa")] | None = None
+    """the largest permitted local plate stress of a shell in Pa, a mean over a patch"""
+    pad_pressure: Annotated[Positive, In("Pa")] | None = None
+    """the largest permitted pressure of a pad in Pa"""
+    first_frequency: Annotated[Positive, In("Hz")] | None = None
+    """the least permitted first natural frequency in Hz"""
+    decay_time: Annotated[Positive, In("s")] | None = None
+    """the longest permitted time in s in which modal damping leaves a tenth of the vibration"""
+    settling_time: Annotated[Positive, In("s")] | None = None
+    """the longest permitted time in s until the tip stays near its final mean"""
+
+    # The quantities whose limit is the smallest permitted value.
+    LEAST: ClassVar = frozenset({"first_frequency"})
+
+    def tip_of(self, length: float) -> float | None:
+        """Return the largest static tip deflection in m of a boom of a length in m, if limited."""
+        tip = self.tip_at_rest
+        return (share_of(tip) or 0.0) * length if isinstance(tip, str) else tip

@@ -24,6 +24,7 @@ from protractile.geometry.fields import (
     names_of,
 )
 from protractile.geometry.typography import choices
+from protractile.geometry.units import System
 from protractile.runs.case import schema
 from protractile.runs.case.kinds import KINDS
 from protractile.runs.case.limits import key_of, tables_in
@@ -56,17 +57,18 @@ _ADVICE = {
 
 
 @contextmanager
-def translated_errors(file: str) -> Iterator[None]:
+def translated_errors(file: str, system: System | None = None) -> Iterator[None]:
     """Raise errors in the tables and in the boom of a case file as :class:`BadInput`.
 
-    If a misspelled key causes two errors, the message is on the unknown key, not the missing one.
+    ``system`` has the units of the case, SI unless given. If a misspelled key causes two errors,
+    the message is on the unknown key, not the missing one.
     """
     try:
         yield
     except ValidationError as error:
         faults = error.errors(include_url=False)
         first = next((f for f in faults if f["type"] in UNKNOWN), faults[0])
-        explained = _explain(first["type"], first["loc"], first["input"], first.get("ctx"))
+        explained = _explain(first["type"], first["loc"], first["input"], first.get("ctx"), system)
         raise BadInput(file, *explained) from None
     except BoomError as error:
         raise BadInput(file, key_of_part(error.where), error.what) from None
@@ -83,11 +85,16 @@ def key_of_part(where: str) -> str:
 
 
 def _explain(
-    fault: str, location: tuple[int | str, ...], value: Any, context: Mapping[str, Any] | None
+    fault: str,
+    location: tuple[int | str, ...],
+    value: Any,
+    context: Mapping[str, Any] | None,
+    system: System | None,
 ) -> tuple[str, str]:
     """Return the key and the message of a validation error."""
     key = _key(location)
-    limits = context or {}
+    units = system or System()
+    limits = {"m": units.unit("m"), "near": f"{units.of(0.2, 'm'):g}"} | dict(context or {})
     if fault == "missing" and isinstance(location[-1], int):
         return _key(location[:-1]), f"must be {_pair(location)}, got {format_value(value)}"
     if fault == "missing":

@@ -25,7 +25,7 @@ from protractile.geometry.fields import describe, is_number
 from protractile.geometry.typography import choices
 from protractile.geometry.units import System
 from protractile.runs import clients
-from protractile.runs.case.amounts import check_amounts, convert_to_si, read_amounts
+from protractile.runs.case.amounts import check_amounts, convert_to_si, read_amounts, system_of
 from protractile.runs.case.build import build_boom, check_ensemble_data, check_names
 from protractile.runs.case.columns import FileColumn, read_pairs
 from protractile.runs.case.combinations import check_combinations
@@ -107,7 +107,7 @@ def check_tables(tables: Mapping[str, object], path: str) -> CheckedCase:
         BadInput: the content is invalid.
     """
     try:
-        with translated_errors(path):
+        with translated_errors(path, system_of(tables)):
             plain, amounts = read_amounts(with_inherited_keys(tables, path), path)
             given = Case.model_validate(take_means(plain, path)[0])
             check_amounts(given, amounts, path)

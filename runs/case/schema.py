@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import reduce
 from math import radians, sin
 from operator import or_
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, create_model, model_validator
 from pydantic.dataclasses import dataclass
@@ -52,6 +52,7 @@ from protractile.runs.case.limits import (
     CaseTable,
     Count,
     Exponent,
+    LimitsTable,
     Part,
     Text,
     unsuitable,
@@ -229,32 +230,6 @@ class BucklingTable(CaseTable):
     """pairs of a slenderness and the reduction of the strength there, for proofs; unless given,
     Winter's curve, and for shear the curve of EN 1993-1-5; beyond the last pair the factor falls
     with the square of the slenderness"""
-
-
-class LimitsTable(CaseTable):
-    """Limits of results; the exit status of a run is 1 if its leading model exceeds one."""
-
-    tip: Annotated[Positive, In("m")] | None = None
-    """the largest permitted tip deflection in m, of the motion"""
-    tip_at_rest: Annotated[Positive, In("m")] | None = None
-    """the largest permitted static tip deflection in m"""
-    tip_lateral: Annotated[Positive, In("m")] | None = None
-    """the largest permitted lateral tip deflection in m, of the motion; only in space"""
-    stress: Annotated[Positive, In("Pa")] | None = None
-    """the largest permitted bending stress in Pa, axial in outer fibres"""
-    wall_stress: Annotated[Positive, In("Pa")] | None = None
-    """the largest permitted local plate stress of a shell in Pa, a mean over a patch"""
-    pad_pressure: Annotated[Positive, In("Pa")] | None = None
-    """the largest permitted pressure of a pad in Pa"""
-    first_frequency: Annotated[Positive, In("Hz")] | None = None
-    """the least permitted first natural frequency in Hz"""
-    decay_time: Annotated[Positive, In("s")] | None = None
-    """the longest permitted time in s in which modal damping leaves a tenth of the vibration"""
-    settling_time: Annotated[Positive, In("s")] | None = None
-    """the longest permitted time in s until the tip stays near its final mean"""
-
-    # The quantities whose limit is the smallest permitted value.
-    LEAST: ClassVar = frozenset({"first_frequency"})
 
 
 if TYPE_CHECKING:

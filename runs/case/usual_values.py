@@ -26,7 +26,7 @@ from protractile.runs.case.combination_tables import (
 )
 from protractile.runs.case.contact import ContactTable, JointTable, RestitutionTable
 from protractile.runs.case.kinds.model import ModelTable
-from protractile.runs.case.limits import is_table, units_of, walk_tables
+from protractile.runs.case.limits import LimitsTable, is_table, units_of, walk_tables
 from protractile.runs.case.load_tables import (
     AxialTable,
     GroundAccelerationTable,
@@ -52,7 +52,6 @@ from protractile.runs.case.schema import (
     EnsembleTable,
     GravityTable,
     LifeTable,
-    LimitsTable,
     StopTable,
     TimeTable,
     VelocityTable,
@@ -95,7 +94,7 @@ def key_values(case: Case, boom: Boom) -> Iterator[KeyValue]:
                 continue
             for key, usual in usual_of_keys.items():
                 value = getattr(table, names_of(type(table))[key])
-                if is_table(value) or (not value and value != 0.0):
+                if is_table(value) or isinstance(value, str) or (not value and value != 0.0):
                     continue
                 expected = usual(table, key) if callable(usual) else usual
                 columns = [expected] if isinstance(expected, Usual) else expected

@@ -324,7 +324,7 @@ def limits(context: Context) -> Iterator[str]:
     # Imported late, since the results of a run take half a second.
     from protractile.runs.pipeline.quantities import case_limits
 
-    for limit in case_limits(context.case.limits):
+    for limit in case_limits(context.case, context.boom):
         at_rest = limit.quantity.name == "tip_at_rest"
         name = "tip" if at_rest else limit.quantity.name
         row = context.rows.where(state=REST, quantity=name).largest
@@ -337,9 +337,9 @@ def limits(context: Context) -> Iterator[str]:
         static = f"the {what} is {limit.format(largest)}"
         if not limit.is_met_by(largest):
             yield f"the limit {limit} is exceeded: {static}"
-        elif combined and not limit.is_met_by(combined[1]):
-            name, most = combined
-            yield f"the limit {limit} is exceeded under the loads of {name}: {limit.format(most)}"
+        elif combined and not combined[2].is_met_by(combined[1]):
+            name, most, own = combined
+            yield f"the limit {own} is exceeded under the loads of {name}: {own.format(most)}"
         elif at_rest and context.boom.telescopes:
             yield Sentence(f"Limit {limit}: {static} at the extension at t = 0; a run decides.")
         elif at_rest:

@@ -355,7 +355,8 @@ def configurations(case: Case, boom: Boom) -> Iterator[Configuration]:
     """
     chart, length = chart_of(case), luffed_point(case, boom, boom.tip, 0.0).along
     shortest = length - sum(_extensions(case).values())
-    for extension in chart.extensions or ([] if chart.lengths else [{}]):
+    extensions = [*chart.extensions, *(_telescoped(case, part) for part in chart.telescoped)]
+    for extension in extensions or ([] if chart.lengths else [{}]):
         own = _extensions(combine(case, load_case_of(case, 0.0, extension, 0.0)))
         yield Configuration(extension, shortest + sum(own.values()))
     if not chart.lengths:

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from protractile.geometry.fields import In, Name, NotNegative, Positive
 from protractile.runs.case.limits import CaseTable
+from protractile.runs.case.load_tables import Telescoped
 
 # Most rows and columns of a chart.
 _MOST = 100
@@ -30,6 +31,9 @@ class ChartTable(CaseTable):
         tuple[Annotated[dict[str, NotNegative], In("m")], ...], Field(max_length=_MOST)
     ] = ()
     """the configurations: inner segment = extension in m, as in load cases"""
+    telescoped: Annotated[tuple[Telescoped, ...], In("1"), Field(max_length=_MOST)] = ()
+    """the fractions of the stroke, in place of extensions, as the table telescoping shares them out
+    to the joints: 0 retracted, 1 or "100 %" extended"""
     lengths: Annotated[tuple[Positive, ...], In("m"), Field(max_length=_MOST)] = ()
     """the lengths in m from the foot pin to the tip, in place of extensions; joints extend up to
     their extension in the case, as the table telescoping says"""

@@ -129,8 +129,9 @@ def plan(case: Case, file: str) -> list[Configuration]:
         raise BadInput(file, "chart.load_case", what)
     if bool(chart.radii) == bool(chart.luffing):
         raise BadInput(file, "chart.radii", "give radii, or luffing, the angles in their place")
-    if chart.extensions and chart.lengths:
-        raise BadInput(file, "chart.lengths", "extensions are given; leave one of them out")
+    given = [name for name in ("extensions", "telescoped", "lengths") if getattr(chart, name)]
+    if len(given) > 1:
+        raise BadInput(file, f"chart.{given[1]}", f"{given[0]} is given; leave one of them out")
     inner = [one.inner for one in telescoped_joints(case) if one.extension is not None]
     for number, extension in enumerate(chart.extensions, start=1):
         for name in extension:

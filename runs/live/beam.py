@@ -115,7 +115,9 @@ def beam_results(
     ):
         trajectory = replace(plan, integrator=integrator).trajectory(lambda _: check_current())
         check_current()
-        rows, _ = evaluate_motion(States.in_motion(loaded, trajectory), model.name, life_of(case))
+        rows, _ = evaluate_motion(
+            States.in_motion(loaded, trajectory), model.name, life_of(case, boom)
+        )
         data = label(boom, {model.name: trajectory})
         results = _results(case, data, Rows([*static, *rows]), curves)
         tip = float(rests.observed("tip")[0])

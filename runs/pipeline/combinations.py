@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -28,7 +28,7 @@ from protractile.runs.pipeline.beam_states import (
 )
 from protractile.runs.pipeline.quantities import Limit
 from protractile.runs.pipeline.statics import boom_with_play
-from protractile.runs.pipeline.tipping import outrigger_rows
+from protractile.runs.pipeline.tipping import foot_of, outrigger_rows
 from protractile.runs.process.terminal import Progress, ignore_progress
 
 
@@ -84,18 +84,21 @@ def combination_rows(case: Case, progress: Progress = ignore_progress) -> Rows:
     return Rows(row for state in combination_states(case, False, progress) for row in state.rows)
 
 
-def limit_in_combinations(limit: Limit, rows: Rows, case: Case) -> tuple[str, float] | None:
-    """Return the largest value in the combinations that demand a limit, and the combination.
+def limit_in_combinations(limit: Limit, rows: Rows, case: Case) -> tuple[str, float, Limit] | None:
+    """Return the governing combination of those that demand a limit, its value and its limit.
 
     These are the combinations with the proof of deflection. None without them, or for limits other
     than that of the static tip deflection.
     """
     largest = limited_tips(rows, case).largest if limit.quantity.name == "tip_at_rest" else None
-    return largest and (f"{largest.state.removeprefix(COMBINATION)!r}", abs(largest.value))
+    if largest is None or largest.limit is None:
+        return None
+    name = f"{largest.state.removeprefix(COMBINATION)!r}"
+    return name, abs(largest.value), replace(limit, permitted=largest.limit)
 
 
 def limited_tips(rows: Rows, case: Case) -> Rows:
-    """Return the tip deflections of the combinations that demand the proof of deflection."""
+    """Return the tip deflections, with limits, of combinations that demand their proof."""
     if case.limits is None or case.limits.tip_at_rest is None:
         return Rows()
     demanding = [
@@ -103,4 +106,6 @@ def limited_tips(rows: Rows, case: Case) -> Rows:
         for combined in combined_cases(case)
         if "deflection" in combined.combination.proofs
     ]
-    return rows.where(state=demanding, quantity="tip")
+    limits, foot = case.limits, foot_of(build_boom(case)).x
+    tips = rows.where(state=demanding, quantity="tip")
+    return Rows(row._replace(limit=limits.tip_of((row.x or 0.0) - foot)) for row in tips)

@@ -46,6 +46,7 @@ from protractile.runs.pipeline.model_quality import quality_notes, reference_of
 from protractile.runs.pipeline.model_run import ModelRun
 from protractile.runs.pipeline.models import MotionPlan, complete_system
 from protractile.runs.pipeline.proofs import prove
+from protractile.runs.pipeline.quantities import tip_limit
 from protractile.runs.pipeline.residual_vibration import residual_vibration
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.statics import reaction_rows, statics
@@ -62,9 +63,9 @@ class Evaluation(NamedTuple):
     loaded: AnalysisModel | None = None  #: the model with its lines; None if it failed
 
 
-def life_of(case: Case) -> Life:
-    """Return the data of fatigue damage and of wear of a case."""
-    life, tip = case.life, None if case.limits is None else case.limits.tip_at_rest
+def life_of(case: Case, boom: Boom) -> Life:
+    """Return the data of fatigue damage and of wear of a case with its boom."""
+    life, tip = case.life, tip_limit(case, boom)
     return Life(life.detail_category, life.partial_factor, life.repeats, life.wear, tip)
 
 
@@ -73,7 +74,7 @@ def evaluate_model(boom: Boom, case: Case, ran: ModelRun) -> Evaluation:
     model, trajectory, shell = ran.model, ran.motion.trajectory, ran.shell
     loaded, panels = model.analysis_model(boom, ran.built), case.buckling is not None
     rows, curves, first = evaluate(
-        loaded, model.name, trajectory, case.time.duration, panels, life_of(case)
+        loaded, model.name, trajectory, case.time.duration, panels, life_of(case, boom)
     )
     if shell is not None:
         rows += extremes(measure_walls(loaded.boom, shell.stresses), model.name, MOTION)
@@ -126,7 +127,7 @@ def _without_play(
         with suppress(*NUMERICAL_ERRORS):
             motion = MotionPlan.of(bonded.system, case, model).trajectory()
             yield evaluate_motion(
-                States.in_motion(bonded, motion), model.name, life_of(case), False
+                States.in_motion(bonded, motion), model.name, life_of(case, boom), False
             )
 
 

@@ -22,6 +22,7 @@ from protractile.runs.case.combinations import combine
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.beam_states import moving_states, static_states
 from protractile.runs.pipeline.combinations import CombinationState
+from protractile.runs.pipeline.quantities import tip_limit
 from protractile.runs.pipeline.statics import boom_with_play
 from protractile.runs.pipeline.tipping import tipping_proofs
 
@@ -83,7 +84,7 @@ def proofs_of(
         requested,
         Resistance(**table.resistance.model_dump()),
         case.buckling.curve if case.buckling else (),
-        case.limits.tip_at_rest if case.limits else None,
+        tip_limit(case, state.states.boom),
         factor,
         state.buckling,
     )

@@ -11,9 +11,12 @@ import numpy as np
 
 from protractile.analysis.quantities import MEASURED, Quantity, declared_quantities, records
 from protractile.geometry.arrays import Array
-from protractile.runs.case.schema import LimitsTable
+from protractile.geometry.boom import Boom
+from protractile.runs.case.limits import LimitsTable, share_of
+from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.design_results import ModelDesignResults
 from protractile.runs.pipeline.summary import ModelSummary
+from protractile.runs.pipeline.tipping import foot_of
 
 # Quantities in SI units by name; None if a model has no value.
 Quantities = dict[str, float | None]
@@ -96,10 +99,13 @@ class Limit:
     quantity: Quantity
     permitted: float  #: permitted value in SI units
     least: bool = False  #: True for a smallest permitted value
+    share: str = ""  #: the share of the boom's length that it is, such as ``2 %``
 
     def __str__(self) -> str:
         """Return quantity, relation and permitted value: ``tip deflection ≤ 900 mm``."""
-        return f"{self.quantity.title} {'≥' if self.least else '≤'} {self.format(self.permitted)}"
+        of_length = f", {self.share} of the length" if self.share else ""
+        relation = "≥" if self.least else "≤"
+        return f"{self.quantity.title} {relation} {self.format(self.permitted)}{of_length}"
 
     def format(self, value: float | None) -> str:
         """Return a value in SI units as text in the displayed unit; empty without a value."""
@@ -117,32 +123,43 @@ class LimitCheck:
 
     limit: Limit
     values: Mapping[str, float]  #: values of the models
-    #: largest value in the combinations that demand the limit, with the name; None without them
-    combined: tuple[str, float] | None = None
+    #: governing value in the combinations that demand the limit, with their name and the limit of
+    #: their boom; None without them
+    combined: tuple[str, float, Limit] | None = None
 
     @property
-    def decisive(self) -> tuple[str, float] | None:
-        """The first model with a value, and the value; None if no model has one.
+    def decisive(self) -> tuple[str, float, Limit] | None:
+        """The first model with a value, the value and its limit; None if no model has one.
 
         If this is within the limit, but not the value of a combination, that is decisive.
         """
-        first, combined = next(iter(self.values.items()), None), self.combined
+        first = next(((*value, self.limit) for value in self.values.items()), None)
+        combined = self.combined
         if first and combined and self.limit.is_met_by(first[1]):
-            return first if self.limit.is_met_by(combined[1]) else combined
+            return first if combined[2].is_met_by(combined[1]) else combined
         return first
 
     @property
     def holds(self) -> bool:
         """True if the decisive value is within the limit; False without a value."""
-        return self.decisive is not None and self.limit.is_met_by(self.decisive[1])
+        return self.decisive is not None and self.decisive[2].is_met_by(self.decisive[1])
 
 
-def case_limits(table: LimitsTable | None) -> list[Limit]:
-    """Return the limits of a case."""
-    values = {} if table is None else table.model_dump(exclude_none=True)
+def tip_limit(case: Case, boom: Boom) -> float | None:
+    """Return the largest permitted static tip deflection of a boom in m; None without a limit."""
+    return None if case.limits is None else case.limits.tip_of(boom.tip - foot_of(boom).x)
+
+
+def case_limits(case: Case, boom: Boom) -> list[Limit]:
+    """Return the limits of a case for its boom."""
+    values = {} if case.limits is None else case.limits.model_dump(exclude_none=True)
+    shares = {name: value for name, value in values.items() if share_of(value) is not None}
+    values |= {name: tip_limit(case, boom) for name in shares}
     least = LimitsTable.LEAST
     return [
-        Limit(quantity, values[quantity.name], quantity.name in least)
+        Limit(
+            quantity, values[quantity.name], quantity.name in least, shares.get(quantity.name, "")
+        )
         for quantity in QUANTITIES
         if quantity.name in values
     ]

@@ -255,7 +255,7 @@ class Results:
 
     def check_limits(self) -> Iterator[LimitCheck]:
         """Yield the limits of the case with values of the main models and of combinations."""
-        limits = case_limits(self.case.limits)
+        limits = case_limits(self.case, self.boom)
         quantities = {name: self.measure(name) for name in self.main_models if limits}
         for limit in limits:
             numbers = {name: quantity[limit.quantity.name] for name, quantity in quantities.items()}

@@ -53,6 +53,11 @@ class LuffedPoint(NamedTuple):
         return degrees(acos(ratio) - atan2(self.up, self.along)) if abs(ratio) <= 1.0 else None
 
 
+def foot_of(boom: Boom) -> Support:
+    """Return the foot pin about which the boom luffs; one at x = 0 on the axis without any."""
+    return next((one.foot for one in boom.segments if one.foot is not None), Support(0.0))
+
+
 def luffed_point(
     case: Case, boom: Boom, x: float, up: float, head: Head | None = None
 ) -> LuffedPoint:
@@ -73,7 +78,7 @@ def luffed_point(
         ahead, above = ahead + level.front, above - level.below
         head = replace(head, level=None).in_boom_axes(boom.segments[-1], 0.0)
         x, up = x + head.ahead, up - head.below
-    foot = next((one.foot for one in boom.segments if one.foot is not None), Support(0.0))
+    foot = foot_of(boom)
     return LuffedPoint(x - foot.x, up + foot.depth, ahead, above)
 
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from protractile.analysis.rows import COMBINATION, INITIAL, REST, Row, Rows
 from protractile.beam_model.statics import static_theory
@@ -143,7 +143,7 @@ def combination_tables(rows: Rows, case: Case, shell: str = "") -> Iterator[Tabl
         return
     of_names = [shown.where(state=COMBINATION + name) for name in names]
     limit, limited = case.limits and case.limits.tip_at_rest, limited_tips(rows, case)
-    exceeding = Rows(row for row in limited if abs(row.value) > (limit or 0.0))
+    exceeding = {row.state for row in limited if (row.utilisation or 0.0) > 1.0}
     columns = [Column("combination,\nload case", names)]
     for heading, quantities in _COLUMNS.items():
         values = [name.where(quantity=quantities).largest for name in of_names]
@@ -156,8 +156,9 @@ def combination_tables(rows: Rows, case: Case, shell: str = "") -> Iterator[Tabl
         which = dict.fromkeys(
             row.state.removeprefix(COMBINATION).partition(", ")[0] for row in limited
         )
+        told = f"{limit} of the length" if isinstance(limit, str) else amount(limit, "m")
         notes.append(
-            f"The limit {amount(limit, 'm')} of the static tip deflection applies to "
+            f"The limit {told} of the static tip deflection applies to "
             f"{join_words([*which])} only{f'; {_EXCEEDS} exceeds it' if exceeding else ''}."
         )
     moving = [combination.name for combination in case.combinations if combination.motion]
@@ -176,9 +177,9 @@ def combination_tables(rows: Rows, case: Case, shell: str = "") -> Iterator[Tabl
         yield _envelope(shown, case.system)
 
 
-def _marked(row: Row, most: float, exceeding: Rows) -> Amount:
+def _marked(row: Row, most: float, exceeding: Collection[str]) -> Amount:
     mark = _GOVERNS if abs(row.value) == most else " " * len(_GOVERNS)
-    mark += f" {_EXCEEDS}" if row in exceeding else ""
+    mark += f" {_EXCEEDS}" if row.quantity == "tip" and row.state in exceeding else ""
     return Amount.of(row.value, row.of.unit, mark)
 
 

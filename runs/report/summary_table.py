@@ -415,6 +415,6 @@ def limit_faults(results: Results) -> Iterator[str]:
             continue
         what = "no model has such a result"
         if check.decisive is not None:
-            name, value = check.decisive
-            what = f"{check.limit.format(value)} in {name}; the case demands {check.limit}"
+            name, value, limit = check.decisive
+            what = f"{limit.format(value)} in {name}; the case demands {limit}"
         yield f"limits.{check.limit.quantity.name}: {what}"

@@ -120,7 +120,13 @@ def plan(
         what = f"no model is compared with {reference!r}; run another model"
         raise BadInput(file, "--against", what)
     bonded = [model.name for model in run if model.bonded]
-    limits = case_limits(whole.limits)
+    # A share of a length that varies is no one limit.
+    limits = [
+        limit
+        for limit in case_limits(whole, build_boom(whole))
+        if not limit.share
+        or all(limit in case_limits(whole, build_boom(point.case)) for point in points)
+    ]
     return Plan(file, whole.title, variations, units, bonded, points, reference, limits)
 
 

@@ -373,7 +373,7 @@ SLIPS: dict[str, tuple[Callable[..., object], tuple[Any, ...], dict[str, Any]]] 
     "[x, height above the axis] in the axes of the boom at the luffing angle gravity.angle of the "
     "case": (Cylinder, (0, 4.0, 0.3, (1.0, -4.3), 5e7), {}),
     "Cylinder.stiff: unknown; known are segment, x, depth, ground, stiffness, dashpot, spread, "
-    "capacity, closed, open, bore, rod, pressure, oil_modulus, pin":
+    "capacity, closed, open, stroke, bore, rod, pressure, oil_modulus, pin":
         (Cylinder, (), GIVEN | {"stiff": 1.0}),
     "Cylinder.ground: must be two numbers, x and z in m, got 3.0":
         (Cylinder, (), GIVEN | {"ground": 3.0}),

@@ -98,11 +98,11 @@ def test_names_stay_as_they_are() -> None:
     ("text", "line"),
     [
         (table("[head]", ahead="300 kg"),
-         "head.ahead: must be in m or another unit of the kind, got '300 kg'"),
+         "head.ahead: must be a length, such as in m, got '300 kg'"),
         (table("[[load]]", segment="fly", x="head", magnitude="5 kN/m"),
-         "load[1].magnitude: must be in N or another unit of the kind, got '5 kN/m'"),
+         "load[1].magnitude: must be a force, such as in N, got '5 kN/m'"),
         (table("[luff]", travel="0.1 rad", time="9 s"),
-         "luff.travel: must be in deg or another unit of the kind, got '0.1 rad'"),
+         "luff.travel: must be an angle, such as in deg, got '0.1 rad'"),
         (table("[damping]", modal="0.5 deg"),
          "damping.modal: must be in % or another unit of the kind, got '0.5 deg'"),
         (table("[head]", ahead="300 furlong"),
@@ -112,9 +112,14 @@ def test_names_stay_as_they_are() -> None:
              f"head.ahead: must have a known unit such as mm, kg, kN or MPa, got '{text}'")
             for text in ("1.2.3 m", "3 m^60 m^60", "3 GPa^30.5 GPa^30.5", "3 m/")
         ),
+        *(
+            (table("[head]", mass=text),
+             f"head.mass: must be one number with one unit, got '{text}'")
+            for text in ("2 x 100 kg", "2*100 kg", "9.4 kg + 0.25 kg", "9.4 kg 0.25 kg")
+        ),
         (table("[head]", ahead="0,3 m"), "head.ahead: must be a number, got '0,3 m'"),
         (table("[head]", mass="-3 kPa"),
-         "head.mass: must be in kg or another unit of the kind, got '-3 kPa'"),
+         "head.mass: must be a mass, such as in kg, got '-3 kPa'"),
         (table("[damping]", modal="3 kg"),
          "damping.modal: must be in % or another unit of the kind, got '3 kg'"),
         (table("[head]", mass="900"),
@@ -128,6 +133,21 @@ def test_names_stay_as_they_are() -> None:
 )  # fmt: skip
 def test_other_units_are_refused(tmp_path: Path, text: str, line: str) -> None:
     assert refusal(tmp_path, DRAWN + JACK + text) == line
+
+
+@pytest.mark.parametrize(
+    ("place", "line"),
+    [
+        ("{ tail = -180 }", "the distance from the tail must not be negative, got -180"),
+        ("'near'", "must be a number of mm, 'tail', 'head' or a distance in mm from one of them "
+         "such as { tail = 200 }, got 'near'"),
+        ("'2 %'", "must be a length, such as in mm, got '2 %'"),
+    ],
+)  # fmt: skip
+def test_messages_have_the_units_of_the_case(tmp_path: Path, place: str, line: str) -> None:
+    """Reference: exact words."""
+    text = "units = 'mm-t-s'" + DRAWN.replace("x = 0.0", f"x = {place}", 1) + JACK
+    assert refusal(tmp_path, text) == f"segment[1].supports[1].x: {line}"
 
 
 def test_distributions_have_units(tmp_path: Path) -> None:

@@ -315,7 +315,11 @@ def test_configurations_follow_the_table_telescoping() -> None:
     assert [one.extension["fly"] for one in found] == pytest.approx([0.5, 2.0, 6.0])
     with pytest.raises(BadInput, match=r"lengths\[1\]: must be from 9 m, with all segments retr"):
         planned(tables | {"chart": tables["chart"] | {"lengths": [8.5]}})
-    tables["chart"] |= {"lengths": [], "extensions": [{"tip": 1.0}, {}]}
+    named = [{"fly": 0.5, "tip": 0.5}, {"fly": 1.5, "tip": 3.0}, {"fly": 6.0, "tip": 3.0}]
+    tables["chart"] |= {"lengths": [], "extensions": named}
+    parts = tables["chart"] | {"extensions": [], "telescoped": [0.0, "43.75 %", 1.0]}
+    assert planned(tables | {"chart": parts}) == planned(tables)
+    tables["chart"] |= {"extensions": [{"tip": 1.0}, {}]}
     tables["load_case"][0]["telescoped"] = 0.5
     lengths = [one.length for one in planned(tables)]
     assert lengths == pytest.approx([8.0 + 6.0 + 1.0, 9.0 + 4.0])
@@ -337,6 +341,8 @@ LIFT = {"load_case": "lift", "radii": [4.0]}
          "chart.lengths[1]: must be from 8 m, with all segments retracted, to 14 m, got 15 m"),
         ({"chart": LIFT | {"extensions": [{"base": 1.0}]}},
          "chart.extensions[1]: 'base' extends in no joint; give 'fly'"),
+        ({"chart": LIFT | {"telescoped": [0.5], "lengths": [9.0]}},
+         "chart.lengths: telescoped is given; leave one of them out"),
         ({"chart": LIFT | {"combinations": ["B"]}},
          "chart.combinations: 'B' is no combination; give 'A'"),
         ({"combination": []},

@@ -12,11 +12,17 @@ from protractile.geometry.cylinder import Cylinder
 from protractile.geometry.polygon import PolygonSection
 from protractile.geometry.section import SectionError
 from protractile.geometry.typography import amount
+from protractile.runs.case import toml
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.combinations import combined_cases
 from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.case.sections import UTable
-from protractile.runs.pipeline.combinations import combination_rows, combination_states
+from protractile.runs.pipeline.combinations import (
+    combination_rows,
+    combination_states,
+    limited_tips,
+)
+from protractile.runs.pipeline.proofs import proofs_of
 from protractile.runs.pipeline.statics import boom_with_play, cylinder_force, state_at_rest
 from tests.runs.case_texts import (
     HINGED,
@@ -284,6 +290,31 @@ def test_the_stroke_of_a_cylinder_replaces_its_open_length(tmp_path: Path) -> No
     text = DRAWN + table("[[cylinder]]", **CYLINDER, stiffness=3e7, stroke=0.9)
     line = "cylinder[1].closed: missing; the stroke begins at this length"
     assert refusal(tmp_path, text) == line
+
+
+def test_a_share_of_the_length_holds_at_each_extension(tmp_path: Path) -> None:
+    """Reference: by hand, 2 % of the lengths from foot to tip; exact words of refusals."""
+    text = DRAWN + JACK + PEOPLE + table("[[load_case]]", name="short", extension={"fly": 1.0})
+    text += table("[[combination]]", name="A", factors={"dead": 9.0, "payload": 9.0},
+                  proofs=["deflection"])  # fmt: skip
+    limited = text + table("[limits]", tip_at_rest="2 %")
+    case = read_case(tmp_path, limited)
+    assert read_case(tmp_path, toml.dumps(case)) == case
+    assert case.limits is not None
+    assert case.limits.tip_at_rest == "2 %"
+    expected = {"combination A, people": 0.2, "combination A, short": 0.14}
+    found = {
+        row.state: row.limit for state in combination_states(case) for row in proofs_of(state, case)
+    }
+    assert found == pytest.approx(expected)
+    tips = limited_tips(combination_rows(case), case)
+    assert {row.state: row.limit for row in tips} == pytest.approx(expected)
+    for share, line in (
+        ("-2 %", "must be a number greater than 0, got -0.02"),
+        ("2", "has no unit; give one, or the number without quotes, got '2'"),
+    ):
+        refused = refusal(tmp_path, text + table("[limits]", tip_at_rest=share))
+        assert refused == f"limits.tip_at_rest: {line}"
 
 
 def test_a_cylinder_is_as_stiff_as_the_oil_on_the_side_that_carries(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from matplotlib import image
 from plotly.graph_objects import Figure as Plot
 
 from protractile.cases import run_case
-from protractile.runs.case.schema import LimitsTable
+from protractile.runs.case.limits import LimitsTable
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.summary import FirstPeak
 from protractile.runs.report import theme
