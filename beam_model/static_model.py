@@ -285,7 +285,7 @@ def _square(cylinder: Cylinder, segment: Segment) -> Cylinder:
     if foot is not None and (foot.x, foot.depth) != (cylinder.x, cylinder.depth):
         along, up = cylinder.x - foot.x, foot.depth - cylinder.depth
     # Its length is not that of the cylinder, whose data may give the stiffness.
-    data: dict[str, Any] = dict.fromkeys(("closed", "open", "bore", "rod", "pressure"))
+    data: dict[str, Any] = dict.fromkeys(("closed", "open", "stroke", "bore", "rod", "pressure"))
     ground = cylinder.x + up, -cylinder.depth - along
     return replace(cylinder, ground=ground, stiffness=cylinder.axial_stiffness, **data)
 
