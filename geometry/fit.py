@@ -194,6 +194,11 @@ def check_pads_in_travel(where: str, joint: Joint, boom: Assembly) -> None:
 
 
 def _check_pad(where: str, joint: Joint, pad: Pad, boom: Assembly) -> None:
+    if pad.lateral_thickness and (
+        isinstance(pad, SlidePad) or not (boom.spatial and pad.thickness)
+    ):
+        what = "needs pad.thickness in a boom with lateral_play; leave it out"
+        raise BoomError(f"{where}.lateral_thickness", what)
     if joint.bonded:
         raise BoomError(where, "the joint is bonded, and nothing touches; leave it out")
     start, end = boom.overlap(joint)

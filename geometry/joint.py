@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY, dataclass, field, replace
 from functools import cached_property
 from typing import Annotated, Any, Literal
 
@@ -65,6 +65,8 @@ class Pad:
     """the distance in m between the pad and the corner"""
     thickness: Length | None = field(default=None, kw_only=True)
     """the thickness in m, from which the joint's stiffness follows unless given"""
+    lateral_thickness: Length | None = field(default=None, kw_only=True)
+    """the thickness in m of the pads at the left and right; the same unless given"""
     modulus: Annotated[Positive, In("Pa")] = field(default=POLYAMIDE, kw_only=True)
     """the modulus of compression in Pa; the modulus of moist cast polyamide unless given"""
     allowable_pressure: Annotated[Positive, In("Pa")] | None = field(default=None, kw_only=True)
@@ -228,6 +230,8 @@ class BareJoint:
 
     def pads_of(self, direction: Direction, side: Side) -> list[tuple[Pad | None, float, float]]:
         """Return (size, fraction of the force, shim in m) of each pad on a side; side 0 is both."""
+        if self.pad and self.pad.lateral_thickness and direction == "y":
+            return [(replace(self.pad, thickness=self.pad.lateral_thickness), 1.0, 0.0)]
         if not self.pads:
             return [(self.pad, 1.0, 0.0)]
         here = [pad for pad in self.pads if pad.touches(direction, side)]

@@ -327,7 +327,10 @@ def _of_contacts(sizes: _Sizes) -> Ranges:
             "length": Usual("the length of the pad", 0.001, 0.2 * length, 20.0),
             "width": Usual("the width of the pad", 0.001, 0.1 * length, 20.0),
             "offset": Usual("the offset of the pad", 0.0, 0.1 * length, 20.0),
-            "thickness": Usual("the thickness of the pad", 0.0005, 0.1, 10.0),
+            **dict.fromkeys(
+                ("thickness", "lateral_thickness"),
+                Usual("the thickness of the pad", 0.0005, 0.1, 10.0),
+            ),
             "modulus": Usual("the modulus of the pad", 1.0e6, 3.0e11, 100.0),
             "allowable_pressure": Usual("the allowable pressure of the pad", 1.0e6, 3.0e8, 1.0e5),
         },

@@ -158,7 +158,7 @@ def combination_tables(rows: Rows, case: Case, shell: str = "") -> Iterator[Tabl
         )
         told = f"{limit} of the length" if isinstance(limit, str) else amount(limit, "m")
         notes.append(
-            f"The limit {told} of the static tip deflection applies to "
+            f"The limit of the static tip deflection, {told}, applies to "
             f"{join_words([*which])} only{f'; {_EXCEEDS} exceeds it' if exceeding else ''}."
         )
     moving = [combination.name for combination in case.combinations if combination.motion]

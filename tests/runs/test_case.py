@@ -261,8 +261,8 @@ EXEMPT = {
         "SectionTable", "UnequalBoxTable", "PolygonTable", "HexagonTable", "OctagonTable", "UTable",
     ),
     "its range follows from the joint or the cylinder (sanity)": (
-        "JointTable.play", "lateral_play", "extension", "stroke", "JointTable.retracted", "ground",
-        "EarthPoint",
+        "JointTable.play", "lateral_play", "extension", "JointTable.stroke",
+        "JointTable.retracted", "ground", "EarthPoint",
     ),
     "its range follows from the boom (chart.run)": ("ChartTable",),
     "any angle": ("LoadTable.direction", "WindPressureTable.direction"),

@@ -29,6 +29,7 @@ from protractile.runs.case.schema import Case
 from protractile.runs.cautions.context import Context
 from protractile.runs.cautions.rules import cautions
 from protractile.runs.check import check_case
+from protractile.runs.pipeline.combinations import combination_rows
 from protractile.runs.pipeline.models import MotionPlan, build
 from protractile.runs.pipeline.results import Results
 from protractile.runs.report.result_tables import pad_table
@@ -49,6 +50,7 @@ from tests.runs.case_texts import (
     table,
 )
 from tests.runs.summaries import model_summary, printed_check, summary_of
+from tests.runs.test_drawing_keys import DRAWN, FACTORS, JACK, PEOPLE
 from tests.touching import contact_laws
 
 LAW = "stiffness = 1e13\nexponent = 2.0\n"
@@ -271,6 +273,33 @@ gravity = {{ angle = 0.0 }}
     )
     assert lines[first + 2].startswith("- -304.8 mm: collars around both segments at each pad")
     assert lines[first + 3] == "Sections under pads are rigid in 'beam'."
+
+
+def test_pads_at_the_sides_have_a_thickness_of_their_own(tmp_path: Path) -> None:
+    """Reference: other input, pads of four sides; exact words of refusals."""
+    text = DRAWN[: DRAWN.index("[[joint]]")] + JACK + table("[wind]", pressure=200.0,
+        shape_factor=1.4, direction="side") + PEOPLE + FACTORS  # fmt: skip
+    size = {"length": 0.12, "width": 0.05}
+    pads: list[dict[str, object]] = [
+        {"side": side, **size, "thickness": thickness}
+        for side, thickness in (("above", 0.02), ("below", 0.02), ("left", 0.015), ("right", 0.015))
+    ]
+    keys = {"outer": "base", "inner": "fly", "extension": 4.0, "stations": ["tail", "head"],
+            "play": 0.002}  # fmt: skip
+    pad = {"pad": size | {"thickness": 0.02, "lateral_thickness": 0.015}}
+    found = []
+    for more in (pad, {"pads": pads}):
+        case = read_case(tmp_path, text + table("[[joint]]", **keys, lateral_play=0.002, **more))
+        found.append([row.value for row in combination_rows(case)])
+        (joint,) = build_boom(case).joints
+        assert str(joint.law("y")) != str(joint.law("z"))
+    assert found[0] == found[1]
+    line = "lateral_thickness: needs pad.thickness in a boom with lateral_play; leave it out"
+    of_pads = {"pads": [pads[0] | {"lateral_thickness": 0.01}, *pads[1:]], "lateral_play": 0.002}
+    for name, more in (("pads[1]", of_pads), ("pad", pad)):
+        flat = text.replace('direction = "side"', "")
+        told = refusal(tmp_path, flat + table("[[joint]]", **keys, **more))
+        assert told == f"joint[1].{name}.{line}"
 
 
 def test_walls_under_pads_are_the_cause_of_a_large_deflection(tmp_path: Path) -> None:

@@ -343,7 +343,10 @@ def test_views_agree_on_the_limit_of_the_tip_in_combinations(
     assert [*limit_faults(results)] == ([] if met else [fault])
     assert protractile("prove", "case.toml") == 1 - met
     assert f"240 mm*{mark}" in (out := capsys.readouterr().out)
-    assert far in " ".join(out.split())
+    assert far in (flowing := " ".join(out.split()))
+    demanded = told.rpartition(", ")[2]
+    note = f"The limit of the static tip deflection, {demanded}, applies to service only"
+    assert note in flowing
 
 
 @pytest.mark.slow
