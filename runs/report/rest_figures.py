@@ -14,6 +14,7 @@ from protractile.analysis.rows import EXTENDED, FARTHEST, INITIAL, REST
 from protractile.dynamics.line import LineQuantity
 from protractile.geometry.arrays import Array
 from protractile.geometry.typography import TO_MILLI, number, with_minus_signs
+from protractile.geometry.units import Unit
 from protractile.runs.report import theme
 from protractile.runs.report.charts import Chart, Curve
 from protractile.runs.report.figure_context import (
@@ -23,15 +24,15 @@ from protractile.runs.report.figure_context import (
 )
 from protractile.runs.report.labels import extension_note
 
-# Heading of each quantity's panel, and conversion factor to its unit.
-_PANELS: Mapping[str, tuple[str, float]] = {
-    "deflection": ("deflection (mm)", TO_MILLI),
-    "lateral": ("lateral deflection (mm)", TO_MILLI),
-    "normal": ("normal force N (kN)", 1e-3),
-    "shear": ("shear force V (kN)", 1e-3),
-    "moment": ("bending moment M (kN m)", 1e-3),
-    "lateral_moment": ("lateral bending moment M (kN m)", 1e-3),
-    "torque": ("torque T (kN m)", 1e-3),
+# Title and unit of each quantity's panel.
+_PANELS: Mapping[str, tuple[str, str]] = {
+    "deflection": ("deflection", "mm"),
+    "lateral": ("lateral deflection", "mm"),
+    "normal": ("normal force N", "kN"),
+    "shear": ("shear force V", "kN"),
+    "moment": ("bending moment M", "kN m"),
+    "lateral_moment": ("lateral bending moment M", "kN m"),
+    "torque": ("torque T", "kN m"),
 }
 # Quantities of an envelope.
 _FORCES: tuple[LineQuantity, ...] = ("normal", "shear", "moment", "lateral_moment", "torque")
@@ -127,7 +128,7 @@ def rest_curves(static: Curves, name: str, color: str) -> list[Curve]:
 
 def _curve(what: str, name: str, x: Array, values: Array, color: str) -> Curve:
     linestyle = "--" if color == theme.PLAY_FREE else "-"
-    panel, in_units = [*_PANELS].index(what), _PANELS[what][1] * values
+    panel, in_units = [*_PANELS].index(what), Unit.conversion(_PANELS[what][1]) * values
     return Curve(name, in_units, color, linestyle, panel=panel, at=x)
 
 
@@ -153,7 +154,7 @@ def chart_along(curves: Sequence[Curve]) -> Chart:
         for curve in curves
         if curve.panel == old
     ]
-    titles = [title for title, _ in _PANELS.values()]
+    titles = [f"{title} ({unit})" for title, unit in _PANELS.values()]
     return _chart(shown, [titles[old] for old in kept])
 
 
