@@ -180,6 +180,8 @@ def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Itera
         yield f"Static strength and plate buckling of {names} are not proved: no yield strength."
     if "yield" in requested_proofs and not any(state.walls for state in states):
         yield NO_SHELL
+    if "column" in requested_proofs and boom.cylinders and not boom.compressed:
+        yield "Column buckling is not proved: along the boom only cylinders press."
     pads = states[0].rows.where(quantity="pad_pressure")
     if "pad" in requested_proofs and boom.joints and all(row.limit is None for row in pads):
         yield "Pad pressure is not proved: no pad has an `allowable_pressure`."
