@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Telescoping shells: rows and springs at extensions, and motion compared with beams."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 
@@ -25,7 +26,7 @@ from protractile.shell_model.boom_shell import ShellOptions
 from protractile.shell_model.contact.local_compliance import compliance, local_compliance
 from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
 from protractile.shell_model.telescoping import squared
-from tests.shell_model.booms import boom_in_space, flat_boom
+from tests.shell_model.booms import boom_in_space, flat_boom, three_segments
 from tests.touching import touching
 
 LAW = PowerContact(1.0e8, 1.0).with_clearance(7.0e-3)
@@ -97,6 +98,31 @@ def test_pads_of_a_boom_in_space_on_the_way() -> None:
     for kind in ("rows", "friction_rows"):
         found, expected = (compliance(one.omega2, getattr(one, kind)) for one in (here, there))
         assert found == pytest.approx(expected, rel=1e-5, abs=1e-6 * expected.max())
+
+
+def drawn(first: float, second: float, drives: Sequence[Drive | None]) -> Boom:
+    """Return a boom of three with overlaps of 3 m less extensions in m."""
+    boom = three_segments()
+    outer, middle, last = boom.segments
+    middle = replace(middle, start=7.0 + first, end=14.0 + first)
+    last = replace(last, start=11.0 + first + second, end=17.0 + first + second)
+    stations = (middle.start, outer.end), (last.start, middle.end)
+    joints = tuple(
+        replace(joint, drive=drive, stations=at, contact_length=0.5, dashpot=3.0e3)
+        for joint, drive, at in zip(boom.joints, drives, stations, strict=True)
+    )
+    return replace(boom, segments=(outer, middle, last), joints=joints)
+
+
+@pytest.mark.slow
+def test_two_joints_on_the_way() -> None:
+    """Reference: other code path, the shell reduced there."""
+    drives = DRIVE, Drive(SCurve(1.0, 0.5), DRIVE.carriers)
+    here = shell(drawn(0.0, 0.0, drives), 0.5).system.at_time(1.0)
+    there = shell(drawn(2.0, 1.0, (None, None)), 0.5).system
+    names = "tip", "head", "head-2"
+    assert at_rest(here, *names) == pytest.approx(at_rest(there, *names), rel=1e-6)
+    assert local(here) == pytest.approx(local(there), rel=1e-4)
 
 
 @pytest.mark.slow
