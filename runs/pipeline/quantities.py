@@ -103,7 +103,7 @@ class Limit:
 
     def __str__(self) -> str:
         """Return quantity, relation and permitted value: ``tip deflection ≤ 900 mm``."""
-        of_length = f", {self.share} of the length" if self.share else ""
+        of_length = f" ({self.share} of the length)" if self.share else ""
         relation = "≥" if self.least else "≤"
         return f"{self.quantity.title} {relation} {self.format(self.permitted)}{of_length}"
 
