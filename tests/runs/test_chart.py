@@ -185,7 +185,8 @@ def flexible(*proofs: str) -> dict[str, Any]:
     return tables
 
 
-HEAD = {"ahead": 0.5, "below": 0.3, "level": {"front": 0.4, "below": 0.6}}
+# The fly is 0.356 m high.
+HEAD = {"ahead": 0.5, "below": {"bottom": 0.078}, "level": {"front": 0.4, "below": 0.6}}
 
 
 @pytest.mark.parametrize("foot", [0.0, 0.78, -0.2])
@@ -193,7 +194,7 @@ HEAD = {"ahead": 0.5, "below": 0.3, "level": {"front": 0.4, "below": 0.6}}
     ("others", "pin", "off"),
     [
         ({}, (0.0, 0.0), (0.0, 0.0)),
-        ({"chassis": CHASSIS, "head": HEAD}, (0.5, 0.3), (0.4 - 0.8, 1.5 - 0.6)),
+        ({"chassis": CHASSIS, "head": HEAD}, (0.5, 0.1), (0.4 - 0.8, 1.5 - 0.6)),
     ],
 )
 def test_the_load_hangs_at_the_radius(

@@ -11,6 +11,8 @@ import pytest
 from matplotlib import image
 from plotly.graph_objects import Figure as Plot
 
+from protractile.analysis.curves import Curve as Along
+from protractile.analysis.curves import Curves
 from protractile.cases import run_case
 from protractile.runs.case.limits import LimitsTable
 from protractile.runs.pipeline.results import Results
@@ -21,6 +23,7 @@ from protractile.runs.report.figure_context import Figure, FigureContext
 from protractile.runs.report.figures import FOLDER, figures_of, write_pictures
 from protractile.runs.report.force_figures import first_contacts
 from protractile.runs.report.motion_figures import close_up, tip
+from protractile.runs.report.rest_figures import chart_along, rest_curves
 from protractile.runs.report.static_charts import draw_chart
 from tests.runs.case_texts import shipped
 from tests.runs.summaries import changed, rubbing
@@ -118,6 +121,18 @@ def test_tips_are_in_millimetres_also_downwards(results: Results) -> None:
             np.testing.assert_allclose(curve.values, factor * height, rtol=1e-12)
     (figure,) = first_contacts(in_space)
     assert figure.chart.panels == ["x = 9 m: force (kN)", "x = 10 m, lateral: force (kN)"]
+
+
+def test_section_forces_are_in_the_units_of_their_panels() -> None:
+    """Reference: by hand, 1 m, 1 N and 1 N·m."""
+    factors = {"mm": 1e3, "kN": 1e-3, "kN m": 1e-3}
+    ones = dict.fromkeys(["deflection", "normal", "moment", "lateral_moment", "torque"], np.ones(2))
+    static = Curves([Along("beam", "rest", True, "arm", 0.0, np.arange(2.0), ones)])
+    chart = chart_along(rest_curves(static, "beam", "k"))
+    assert len(chart.panels) == len(ones)
+    for curve in chart.curves:
+        unit = chart.panels[curve.panel].rpartition("(")[2].removesuffix(")")
+        assert curve.values.tolist() == [factors[unit]] * 2
 
 
 def test_contact_forces_keep_their_impulse(results: Results) -> None:

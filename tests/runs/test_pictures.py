@@ -124,6 +124,7 @@ def test_pictures_show_the_boom_its_overlap_and_its_motion(
         stills = []
         for frame in range(animation.n_frames):
             animation.seek(frame)
+            assert animation.info["duration"] == 5000 / 4
             stills.append(np.asarray(animation.convert("RGB"), dtype=float))
     assert len(stills) == 4
     assert (np.abs(stills[1] - stills[0]).max(axis=2) > 60.0).mean() > 0.01
@@ -156,6 +157,12 @@ def test_the_scale_of_stresses_ends_near_the_largest() -> None:
     (stress,) = hanging.point_stresses([0.5])
     assert (stress > view.largest).mean() <= 0.01 < (stress >= view.largest).mean()
     np.testing.assert_array_equal(view.stresses[0.5], stress)
+    # A deep boom is within the picture, too.
+    deep = replace(hanging, points=hanging.points * [1.0, 1.0, 5.0])
+    view = BoomView.of(deep, [Instant(0.5)])
+    pixels = view.camera.project(view.places(deep.displacement(0.5), 0.5))
+    assert pixels.min() > 0.0
+    assert (pixels.max(axis=0) < view.camera.pixels).all()
 
 
 @pytest.mark.slow

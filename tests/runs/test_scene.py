@@ -203,6 +203,11 @@ def test_a_lift_is_drawn_and_labelled_at_its_angle() -> None:
     for reference in ((11.1016, 11.1016), (1.2728, -0.2828)):
         nearest = np.nanmin(np.abs(places - reference).max(axis=1))
         assert nearest < 0.11  # half the height of the fly
+    (arc,) = (line.get_xydata() for line in sheet.axes[0].lines if len(line.get_xdata()) == 30)
+    turned = np.linspace(0.0, np.pi / 4.0, 30)[:, None]
+    assert arc == pytest.approx(0.18 * 15.7 * np.hstack([np.cos(turned), np.sin(turned)]))
+    (label,) = (text for text in sheet.axes[0].texts if text.get_text() == "45°")
+    assert label.get_position() == pytest.approx(1.15 * arc[15])
     texts = [text.get_text() for axes in sheet.axes for text in axes.texts]
     # The last box has equal walls.
     assert [text for text in texts if " × " in text] == [

@@ -243,6 +243,10 @@ def test_band_boundaries_pass_no_triangle_and_are_at_loads() -> None:
     """Reference: by hand. Near loads, lines that leave short bands are no boundaries."""
     spans = np.array([[0.0, 2.0], [1.0, 3.0], [3.0, 4.0]])
     assert band_boundaries(spans, []).tolist() == [0.0, 3.0, 4.0]
+    # A sixtieth of 61 lines is more than one.
+    lines = np.arange(62.0)
+    cuts = band_boundaries(np.column_stack([lines[:-1], lines[1:]]), [])
+    assert cuts.tolist() == [*range(0, 60, 2), 61]
     edges = np.linspace(0.0, 10.0, 1001)
     cuts = band_boundaries(np.column_stack([edges[:-1], edges[1:]]), [2.01])
     assert 2.01 in cuts.round(9)
