@@ -30,7 +30,12 @@ from protractile.shell_model.reduction.krylov import (
     reduce_class,
 )
 from protractile.shell_model.reduction.mirror import SymmetryClass
-from protractile.shell_model.reduction.symmetry import Job, SymmetryReduction, share_jobs
+from protractile.shell_model.reduction.symmetry import (
+    Job,
+    SymmetryReduction,
+    first_half,
+    share_jobs,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +66,7 @@ def reduce_segments(
         segments: data of each segment.
         options: shifts and moments, or a tolerance.
         progress: callback that receives the completed fraction, 0 to 1.
-        helper: second process, which reduces every second symmetry class of this rank.
+        helper: second process, which reduces half of the symmetry classes.
 
     Raises:
         NumericsError: a compliance is not finite, all inputs of a segment are zero, or the
@@ -73,9 +78,7 @@ def reduce_segments(
         for segment in segments
     ]
     classes = comm.bcast([[job.symmetry_class for job in some] for some in jobs])
-    counts = comm.bcast(
-        [[int(np.count_nonzero(job.forces.any(axis=0))) for job in some] for some in jobs]
-    )
+    counts = comm.bcast([[job.num_forces for job in some] for some in jobs])
     if not all(any(some) for some in counts):
         raise NumericsError("nothing acts on a segment, and it has no motion: give it a load")
     owners = [segment for segment, some in zip(segments, counts, strict=True) for _ in some]
@@ -87,7 +90,9 @@ def reduce_segments(
         for some in counts
         for count in some
     ]
+    every = [job for some in jobs for job in some]
     mine = range(comm.rank, len(owners), comm.size)
+    here = first_half(every) if helper else len(mine)
 
     def reduce_here(number: int, job: Job) -> ClassCoordinates:
         done = mine.index(number)
@@ -95,14 +100,13 @@ def reduce_segments(
             owners[number].symmetry.cell,
             job,
             class_options[number],
-            lambda part: progress((done + part) / len(mine)),
+            lambda part: progress((done + part) / here),
         )
 
     def reduce_there(number: int, job: Job) -> Future[ClassCoordinates]:
         assert helper is not None
         return helper.submit(reduce_class, owners[number].symmetry.cell, job, class_options[number])
 
-    every = [job for some in jobs for job in some]
     results = share_jobs(comm, every, reduce_here, reduce_there if helper else None)
     return [
         _join(segment.symmetry, some, list(islice(results, len(some))))

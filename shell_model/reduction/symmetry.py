@@ -49,6 +49,9 @@ _Result = TypeVar("_Result")
 # Components of the displacement, and of the rotation.
 _COMPONENTS = np.arange(6).reshape(2, 3)
 
+# Work of a factorisation, in solutions for one load vector: about as much as for a box section.
+_FACTORISATION = 20
+
 # Fraction of the largest value of a column below which its part in a class is round-off.
 _ROUND_OFF = 1.0e-9
 
@@ -156,6 +159,16 @@ class Job:
     springs: Attachments
     masses: Attachments
 
+    @property
+    def num_forces(self) -> int:
+        """The number of load vectors that are not zero in this class."""
+        return int(np.count_nonzero(self.forces.any(axis=0)))
+
+    @property
+    def work(self) -> int:
+        """The work of the reduction, in solutions for one row of one load vector."""
+        return len(self.forces) * (_FACTORISATION + self.num_forces)
+
     def shell(self, cell: SymmetryCell) -> ShellMatrices:
         """Return the shell of a cell in this symmetry class, with the energy of the segment."""
         conditions = [
@@ -217,10 +230,14 @@ class SymmetryReduction:
         if self._comm.rank != 0:
             return []
         images = [self._images(entries) for entries in gathered if entries is not None]
+        largest = [np.abs(image).max(axis=(0, 1), initial=0.0) for image in images]
         jobs = []
         for symmetry_class in symmetry_classes(self._mirrors):
             signs = symmetry_class.signs[:, self.cell.component]
-            forces, rows, loads, springs, masses = (_sum_of_class(image, signs) for image in images)
+            forces, rows, loads, springs, masses = (
+                _sum_of_class(image, signs, size)
+                for image, size in zip(images, largest, strict=True)
+            )
             if forces.any() or loads.any():
                 attached_springs = Attachments(springs, shell.springs.factors)
                 attached = attached_springs, Attachments(masses, shell.masses.factors)
@@ -295,7 +312,8 @@ def share_jobs(
 ) -> Iterator[tuple[int, _Result | None]]:
     """Compute the jobs of rank 0 on all ranks, and yield (rank, result) of each. Collective.
 
-    On all other ranks the result is None. ``submit`` sends every second job to another process.
+    On all other ranks the result is None. ``submit`` sends the jobs after :func:`first_half` to
+    another process.
     """
     roots = [number % comm.size for number in range(comm.bcast(len(jobs)))]
     mine = {
@@ -305,7 +323,7 @@ def share_jobs(
     if submit is not None:
         # If the other process has ended, this process computes its jobs.
         with suppress(BrokenExecutor):
-            futures |= {number: submit(number, mine[number]) for number in list(mine)[1::2]}
+            futures |= {n: submit(n, mine[n]) for n in list(mine)[first_half([*mine.values()]) :]}
 
     def work() -> dict[int, _Result]:
         here = {n: compute(n, job) for n, job in mine.items() if n not in futures}
@@ -318,6 +336,15 @@ def share_jobs(
     results = run_collectively(comm, work)
     for number, root in enumerate(roots):
         yield root, results.pop(number, None)
+
+
+def first_half(jobs: Sequence[Job]) -> int:
+    """Return how many of the first jobs make about half of the work.
+
+    Jobs of the same segment stay together, as each process assembles the cells of its jobs.
+    """
+    work = np.cumsum([job.work for job in jobs])
+    return int(np.abs(work - 0.5 * work[-1]).argmin()) + 1
 
 
 def result_or_compute(future: Future[Any] | None, compute: Callable[[], _Result]) -> _Result:
@@ -379,14 +406,13 @@ _IMAGES: Mapping[Direction, Sequence[tuple[int, int]]] = {
 }
 
 
-def _sum_of_class(images: Array, signs: Array) -> Array:
+def _sum_of_class(images: Array, signs: Array, largest: Array) -> Array:
     """Return the part (num_rows, num_columns) of images in the symmetry class with these signs.
 
-    Columns that are only round-off are zero.
+    Columns that are only round-off are zero; ``largest`` (num_columns,) are the largest values.
     """
     part = np.zeros(images.shape[1:])
     for image, sign in zip(images, signs, strict=True):
         part += sign[:, None] * image
-    largest = np.abs(images).max(axis=(0, 1), initial=0.0)
     part[:, np.abs(part).max(axis=0, initial=0.0) <= _ROUND_OFF * largest] = 0.0
     return part

@@ -96,7 +96,6 @@ class ShiftedSolver:
     """Direct solver for K + σ M with the shift σ = (2π f)² of a frequency f in Hz. Collective."""
 
     def __init__(self, shell: ShellMatrices, frequency: float) -> None:
-        self._mass = shell.mass
         self.sigma = squared(frequency)
         self._matrix = shell.stiffness.copy()
         self._matrix.axpy(
@@ -105,6 +104,9 @@ class ShiftedSolver:
             # Springs and point masses couple nodes that the plates do not couple.
             structure=PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN,
         )
+        # Sums of matrices with the same pattern take a tenth of the time.
+        self._mass = self._matrix.duplicate()
+        self._mass.axpy(1.0, shell.mass, structure=PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN)
         self._matrix.setOption(PETSc.Mat.Option.SPD, True)
         self._factors = PETSc.PC().create(shell.comm)
         self._factors.setOptionsPrefix(_PREFIX)
@@ -124,7 +126,7 @@ class ShiftedSolver:
         self._matrix.axpy(
             sigma - self.sigma,
             self._mass,
-            structure=PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN,
+            structure=PETSc.Mat.Structure.SAME_NONZERO_PATTERN,
         )
         self.sigma = sigma
         self._factors.setOperators(self._matrix)
@@ -143,5 +145,5 @@ class ShiftedSolver:
 
     def destroy(self) -> None:
         """Free the memory of the factors."""
-        for thing in (self._factors, self._matrix):
+        for thing in (self._factors, self._matrix, self._mass):
             thing.destroy()
