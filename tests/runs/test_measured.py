@@ -335,6 +335,12 @@ def test_a_prediction_follows_the_covariance() -> None:
     assert found.frame.loc["payload.mass", "value"] == pytest.approx(0.01 * stiffness, rel=1e-4)
     assert found.frame.loc["payload.mass", "error"] == pytest.approx(5e-4 * stiffness, rel=1e-4)
     assert predicted == pytest.approx(-0.01, rel=1e-4)
+    # A tape measure with 1 mm would share the largest systematic error, 5 % of 10 mm.
+    tape = channel("tip", value=-0.01)
+    rough = channel("frequency", value=3.0, uncertainty=1.0e4, systematic=0.05)
+    helpful = identify(measured(CANTILEVER, tape, rough), {"payload.mass": (10.0, 9e3)}).helpful
+    left = 1.0 / np.sqrt(1.0 + 1.0 / (1.0 + 0.5**2))
+    assert dict(helpful)["tip at rest"] == pytest.approx([left], rel=1e-3)
     case_in_mm = found.case.model_copy(update={"shown_units": "mm-t-s"})
     in_mm = identify(case_in_mm, {"payload.mass": (0.01, 0.9)}).frame
     assert in_mm.loc["payload.mass", "value"] == pytest.approx(0.01e-3 * stiffness, rel=1e-4)
