@@ -47,6 +47,8 @@ ROUGH, GENERATIONS = 1.2, 30
 SAME = 1.0e-2
 # Increase of χ² over s² at the ends of an interval of 95 %.
 CHI_SQUARE_95 = 3.8415
+# Points of a regression for each unknown, and number of regressions, each around the last result.
+POINTS, REGRESSIONS = 8, 3
 # Number of values of a profile, and their farthest distance in standard errors.
 PROFILE, FARTHEST = 9, 3.0
 
@@ -259,6 +261,48 @@ def fit(
         best = min(ends, key=lambda end: float(end.cost))
     own = slice(-span.size)
     return Fit(lower, lower + span, lower + span * best.x, best.fun[own], best.jac[own], costs)
+
+
+def regress(
+    residuals: Residuals, low: Array, high: Array, start: Array, reach: float, starts: Array
+) -> Fit:
+    """Return the least squares of rough residuals near ``start``, by linear regression.
+
+    Features of chaotic motions scatter between neighbouring unknowns. A search ends in one of many
+    minima, and differences have the scatter in them. A regression over points around the start
+    averages both (response surface; Box and Wilson 1951).
+
+    >>> scatter = np.random.default_rng(0).normal
+    >>> rough = lambda p: 9.0 * (p - 2.0) + scatter(0.0, 0.4, 40)
+    >>> found = regress(rough, np.zeros(1), np.full(1, 9.0), np.ones(1), 0.1, np.zeros(1))
+    >>> found.values.round(1), found.errors.round(3)
+    (array([2.]), array([0.018]))
+
+    Args:
+        residuals: see :func:`fit`.
+        low, high, start: bounds and first values (num_unknowns,).
+        reach: distance of the farthest points, as a fraction of the range of each unknown.
+        starts: χ² of the searches before.
+
+    Raises:
+        NumericsError: the residuals cannot be computed at a point.
+    """
+    from scipy.optimize import lsq_linear
+    from scipy.stats import qmc
+
+    span, held = high - low, HOLD * np.eye(start.size)
+    cloud = qmc.Sobol(start.size, seed=SEED).random_base2((POINTS * start.size - 1).bit_length())
+    u = (start - low) / span
+    # Smaller regions have less curvature in them.
+    for far in reach * 0.5 ** np.arange(REGRESSIONS):
+        away, middle = far * (2.0 * cloud - 1.0), np.clip(u, far, 1.0 - far)
+        design = np.column_stack([np.ones(len(away)), away])
+        off = np.array([residuals(low + span * (middle + point)) for point in away])
+        at, *slopes = np.linalg.lstsq(design, off, rcond=None)[0]
+        slope = np.transpose(slopes)
+        rows, ends = np.vstack([slope, held]), np.append(at, np.zeros(start.size))
+        u = middle + lsq_linear(rows, -ends, (-far, far)).x
+    return Fit(low, high, low + span * u, at + slope @ (u - middle), slope, starts)
 
 
 def jacobian(residuals: Residuals, u: Array, step: float = STEP) -> Array:

@@ -18,7 +18,7 @@ from protractile.runs.case.build import build_boom
 from protractile.runs.case.schema import Case
 from protractile.runs.measured.compare import AGREES, Comparison
 from protractile.runs.measured.experiment import Experiment
-from protractile.runs.measured.fit import STEP, Fit, fit, jacobian, profile
+from protractile.runs.measured.fit import STEP, Fit, fit, jacobian, profile, regress
 from protractile.runs.measured.keys import Channel
 from protractile.runs.measured.residuals import Residuals, Target
 from protractile.runs.process.bad_input import BadInput
@@ -286,6 +286,9 @@ def identify(
     found = fit(first, low, high, start, starts, progress, first.step, windows)
     # Near the solution it is known what errors the readings share, and which motions are chaotic.
     residuals = Residuals.of(experiment, keys, found.values).with_shared_errors(found.values)
-    searched = found.starts
-    found = fit(residuals, low, high, found.values, 1, progress, residuals.step)
-    return Identification(keys, residuals, start, replace(found, starts=searched))
+    if residuals.rough:
+        found = regress(residuals, low, high, found.values, residuals.step, found.starts)
+    else:
+        again = fit(residuals, low, high, found.values, 1, progress)
+        found = replace(again, starts=found.starts)
+    return Identification(keys, residuals, start, found)

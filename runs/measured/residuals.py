@@ -78,13 +78,23 @@ class Features(NamedTuple):
         off = slow - slow[0]
         side = float(np.sign(off[np.abs(off).argmax()]))
         peaks, _ = find_peaks(side * slow, prominence=PROMINENCE * np.ptp(slow))
-        at, peak = (time[peaks[0]], slow[peaks[0]]) if peaks.size else (np.nan, np.nan)
+        at, peak = _vertex(time, slow, peaks[0]) if peaks.size else (np.nan, np.nan)
         low, high = np.quantile(values, (0.1, 0.9))
         frequencies, power = periodogram(values, 1.0 / step, "hann", size, "constant")
         return cls(
             values.mean(), low, high, slow.std(), (values - slow).std(), peak, at,
             mean_period(time, slow), float(frequencies[power.argmax()]), decay(time, values),
         )  # fmt: skip
+
+
+def _vertex(time: Array, values: Array, peak: int) -> tuple[float, float]:
+    """Return the time in s and the value of a peak by the parabola through it and its neighbours.
+
+    The time of the largest value alone would change in steps, which have no derivative.
+    """
+    before, top, after = values[peak - 1 : peak + 2]
+    part = 0.5 * (before - after) / (before - 2.0 * top + after)
+    return time[peak] + part * (time[1] - time[0]), top - 0.25 * (before - after) * part
 
 
 def decay(time: Array, values: Array) -> float:
@@ -142,7 +152,9 @@ class Target:
         clean, *noisy = several._steady(channel, readings + noise)
         # The noise of the readings changes a feature as much as the same noise once more.
         values = 2.0 * clean - np.mean(noisy, axis=0)
+        n = len(members)
         scatter = np.nan_to_num(several._steady(channel, members).std(axis=0, ddof=1))
+        scatter *= np.sqrt((1.0 + 1.0 / n) * (n - 1) / (n - 3))
         parts = scatter, np.std(noisy, axis=0, ddof=1), LEAST * np.abs(values)
         return cls(values, np.linalg.norm(parts, axis=0), cutoff)
 
@@ -222,9 +234,14 @@ class Residuals:
         return dict(zip(self.keys, map(float, values), strict=True))
 
     @property
+    def rough(self) -> bool:
+        """Whether some residuals are those of features, which scatter."""
+        return any(target.cutoff is not None for target in self.targets)
+
+    @property
     def step(self) -> float:
         """The step of differences for a Jacobian, as a fraction of the range of each unknown."""
-        return STEP if all(target.cutoff is None for target in self.targets) else COARSE
+        return COARSE if self.rough else STEP
 
     @property
     def of_curves(self) -> Residuals:

@@ -214,6 +214,14 @@ def test_frequency_and_decay_of_a_damped_oscillation() -> None:
     assert np.isnan(Features.of(time, time, 3.0).decay)
 
 
+def test_a_peak_between_two_readings() -> None:
+    """Reference: analytic. Steps of 0.02 s would leave 6 ms of the time, and 2e-4 of the height."""
+    time = np.linspace(0.0, 8.0, 401)
+    found = Features.of(time, 1.0 - np.cos(2.0 * np.pi * 0.7 * time), 5.0)
+    assert found.time_of_peak == pytest.approx(1.0 / 1.4, abs=1e-4)
+    assert found.peak == pytest.approx(2.0, abs=1e-5)
+
+
 SERIES = [(0.0, 0.0), (1.0, 0.0)]
 
 
