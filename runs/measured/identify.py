@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from protractile.analysis.low_pass import AT_REST
 from protractile.geometry.arrays import Array
 from protractile.geometry.typography import number, percent
 from protractile.runs.case import reading
@@ -127,11 +128,14 @@ class Identification:
         at, slopes = (np.split(part, ends) for part in (compute(u), jacobian(compute, u, STEP)))
         systematic = max(channel.systematic for channel in channels)
         alone = np.diag(self.found.covariance_with())
+        tip = at[[channel.name for channel in possible].index("tip over time")]
+        # At rest, records have the range of round-off.
+        moving = np.ptp(tip) > AT_REST * np.abs(tip).max()
         helpful = []
         for channel, values, slope in zip(possible, at, slopes, strict=True):
             size = UNCERTAINTY * (np.abs(values).max() if channel.value == 0.0 else np.ptp(values))
             size = OF_TAPE if channel.value == 0.0 and channel.measures.unit == "m" else size
-            if size > 0.0:
+            if size > 0.0 and (moving or channel.value is not None):
                 known = {"uncertainty": size, "systematic": systematic}
                 sized = channel.model_copy(update=known)
                 target = Target.of_readings(sized).with_shared_errors(sized, values[None])
