@@ -16,6 +16,9 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+# As in the Makefile; before numpy, whose threads would change bits and compete with workers.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
 import protractile.shell_model  # noqa: F401 # its import loads MPI before DOLFINx
 from protractile.dynamics.contact import PowerContact
 from protractile.geometry.boom import Boom, Joint, Material, Segment, Support
