@@ -152,6 +152,7 @@ class Target:
         clean, *noisy = several._steady(channel, readings + noise)
         # The noise of the readings changes a feature as much as the same noise once more.
         values = 2.0 * clean - np.mean(noisy, axis=0)
+        # Standard deviation of one more motion, by Student's t.
         n = len(members)
         scatter = np.nan_to_num(several._steady(channel, members).std(axis=0, ddof=1))
         scatter *= np.sqrt((1.0 + 1.0 / n) * (n - 1) / (n - 3))
