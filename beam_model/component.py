@@ -39,12 +39,12 @@ class Component:
     Args:
         stiffness, mass, damping: matrices (num_dofs, num_dofs).
         load: load vector (num_dofs,) of the uniform load of the segment.
-        unit_load: load vector (num_dofs,) of a uniform load of 1 N/m (1 N for twist).
         at: function that returns the row (num_dofs,) of the deflection or twist (order 0), and for
             bending of the rotation β of the cross-section (order 1) and of β′ (order 2).
         rigid_modes: number of rigid modes.
         geometric_stiffness: K_G (num_dofs, num_dofs) of the axial force, which reduces the
             stiffness.
+        unit_load: load vector (num_dofs,) of a uniform load of 1 N/m; empty for twist.
         slopes: w′ (num_points, num_dofs) at the Gauss points of elements; empty without elements.
         points: x and weights (2, num_points) in m of the Gauss points.
         rotation_load: load vector (num_dofs,) of an angular acceleration of 1 rad/s² about
@@ -59,10 +59,10 @@ class Component:
     mass: Array
     damping: Array
     load: Array
-    unit_load: Array
     at: RowAt
     rigid_modes: int
     geometric_stiffness: Array
+    unit_load: Array = field(default_factory=lambda: np.zeros(0))
     rotation_load: Array = field(default_factory=lambda: np.zeros(0))
     inertia_load: Array = field(default_factory=lambda: np.zeros(0))
     breaks: Array = field(default_factory=lambda: np.zeros(0))

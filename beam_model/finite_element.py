@@ -167,7 +167,6 @@ def _twist(segment: Segment, nodes: Array) -> Component:
     lateral = segment.lateral
     assert lateral is not None
     stiffness, mass = (np.zeros((nodes.size, nodes.size)) for _ in range(2))
-    unit_load = np.zeros(nodes.size)
     twisting_stiffness = segment.material.shear_modulus * lateral.torsion_constant
     for k, h in enumerate(np.diff(nodes)):
         dofs = slice(k, k + 2)
@@ -178,7 +177,6 @@ def _twist(segment: Segment, nodes: Array) -> Component:
         unit_stiffness, unit_mass = [[1.0, -1.0], [-1.0, 1.0]], [[2.0, 1.0], [1.0, 2.0]]
         stiffness[dofs, dofs] += ratio * (twisting_stiffness / h) * np.array(unit_stiffness)
         mass[dofs, dofs] += inertia_ratio * (lateral.polar_inertia * h / 6.0) * np.array(unit_mass)
-        unit_load[dofs] += 0.5 * h
     fixed = [_nearest(nodes, support.x) for support in segment.supports]
     free = np.setdiff1d(np.arange(nodes.size), fixed)
 
@@ -194,7 +192,6 @@ def _twist(segment: Segment, nodes: Array) -> Component:
         mass=mass[block],
         damping=nothing,
         load=np.zeros(free.size),
-        unit_load=unit_load[free],
         at=twist,
         rigid_modes=segment.rigid_twists,
         geometric_stiffness=nothing,

@@ -179,7 +179,6 @@ def kantorovich_twist(segment: Segment, terms: int) -> Component:
         mass=lateral.polar_inertia * products(basis.value, mass_weights),
         damping=np.zeros((terms, terms)),
         load=np.zeros(terms),
-        unit_load=basis.integral,
         at=basis.at,
         rigid_modes=segment.rigid_twists,
         geometric_stiffness=np.zeros((terms, terms)),
@@ -316,6 +315,4 @@ def _rigid_motion(segment: Segment) -> Component:
 
 def _no_motion() -> Component:
     none, empty = np.zeros(0), np.zeros((0, 0))
-    return Component(
-        empty, empty, empty, none, none, lambda x, order=0: none, 0, empty, bends=False
-    )
+    return Component(empty, empty, empty, none, lambda x, order=0: none, 0, empty, bends=False)

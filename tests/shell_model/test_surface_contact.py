@@ -16,8 +16,9 @@ from protractile.geometry.contact_places import pads as places_of_pads
 from protractile.geometry.joint import POLYAMIDE, PadSide
 from protractile.shell_model.boom_shell import ShellOptions, assemble_segments
 from protractile.shell_model.contact.rows import ShellContacts
-from protractile.shell_model.contact.surface import SurfaceOptions
+from protractile.shell_model.contact.surface import SurfaceOptions, without_stiff_modes
 from protractile.shell_model.contact.wall_rows import Wall, WallPoints
+from protractile.shell_model.reduction.segment import ReducedSegment
 from protractile.shell_model.segment.cross_section import COMPONENT
 from tests.shell_model.booms import (
     LAW,
@@ -159,3 +160,20 @@ def test_several_pads_are_rows_of_their_own() -> None:
         assert inner.row(contact.operator[1]) @ moved == pytest.approx(mean, rel=1e-9)
         share = 0.375 if pad.patch.offset == 0.0 else 0.125
         assert contact.law.terms[0].stiffness == pytest.approx(share * LAW.law.stiffness)
+
+
+def test_modes_without_compliance_are_left_out() -> None:
+    """Reference: by hand, rows of 1 in each mode. The second row reads no stiff mode."""
+    omega2, none = np.array([0.0, 1.0, 100.0, 1.0e6, 1.0e8]), np.zeros(0)
+    square = np.eye(5)
+    whole = ReducedSegment(
+        omega2, square, 0.0, 0.0, np.ones(3), np.diag(omega2), square[:, :4], none, 9.0
+    )
+    rows = np.array([np.ones(5), [1.0, 1.0, 1.0, 0.0, 0.0]]).T
+    kept = without_stiff_modes(MPI.COMM_SELF, whole, rows)
+    assert kept.omega2.tolist() == [0.0, 1.0, 100.0]
+    assert kept.shapes.shape == (5, 3)
+    np.testing.assert_array_equal(kept.geometric, np.diag(kept.omega2))
+    np.testing.assert_allclose(np.abs(kept.coarser), np.eye(3), atol=1e-15)
+    np.testing.assert_allclose(kept.lost_compliance, [1.0 + 1.01e-6, 1.0, 1.0], rtol=1e-12)
+    assert kept.compliance_error == pytest.approx(1.01e-6 / 1.01000101, rel=1e-9)
