@@ -24,7 +24,7 @@ from protractile.runs.case.build import build_boom
 from protractile.runs.pipeline.model_output import BeamOutput, SegmentMotion
 from protractile.runs.report import theme
 from protractile.runs.report.boom_drawing import boom_sheet
-from protractile.runs.report.marks import marks_of
+from protractile.runs.report.marks import elevation, marks_of
 from protractile.runs.report.overlap_pictures import OverlapView
 from protractile.runs.report.scene import Scene, round_scale
 from protractile.runs.report.symbols import PAYLOAD, boom_symbols
@@ -71,6 +71,16 @@ def test_displacement_is_the_sum_of_the_modes(shell: Scene) -> None:
     assert not shell.along(0.5).any()
     np.testing.assert_allclose(extended.along(0.5), np.where(inner, -1.0, 0.0))
     assert extended.reach([0.5]) == pytest.approx((0.0, BOOM.tip))
+
+
+def test_an_elevation_is_luffed(shell: Scene) -> None:
+    """Reference: analytic. At 30° a point (x, z) is at (x cos − z sin, x sin + z cos)."""
+    flat, luffed = (elevation(shell, shell.points, 1.0, angle, 1.0) for angle in (0.0, 30.0))
+    cosine, sine = np.sqrt(0.75), 0.5
+    for before, after in zip(flat.curves[:2], luffed.curves[:2], strict=True):
+        x, z = before.at, before.values
+        np.testing.assert_allclose(after.at, cosine * x - sine * z, atol=1e-12)
+        np.testing.assert_allclose(after.values, sine * x + cosine * z, atol=1e-12)
 
 
 @pytest.mark.parametrize(("scale", "section"), [(1.0, 1.0), (20.0, 2.0)])
