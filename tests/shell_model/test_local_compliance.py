@@ -192,10 +192,10 @@ def test_other_sections_distort_as_their_shells(shape: str) -> None:
         head = hexagon(0.37, 0.25, 0.16, 0.007, 0.009, 0.006)
         inner = replace(boom.segments[1], head_section=head)
         boom = replace(boom, segments=(boom.segments[0], inner))
-    shell, beam = of_shell(boom, 0.15 if shape == "folded bottom" else 0.1), of_beam(boom)
+    shell, beam = of_shell(boom, 0.15 if shape == "folded bottom" else 0.12), of_beam(boom)
     assert beam.stations == pytest.approx(shell.stations, rel=0.08)
     assert beam.tip == pytest.approx(shell.tip, rel=0.03)
-    assert abs(of_beam(boom, 0.0).tip) < 0.75 * abs(shell.tip)
+    assert abs(static_state(boom, walls=0.0).tip) < 0.75 * abs(shell.tip)
 
 
 @pytest.mark.slow
