@@ -19,7 +19,6 @@ from protractile.geometry.mesh import mesh_segment
 from protractile.geometry.plating import plain_thickness
 from protractile.shell_model.boom_shell import ShellOptions
 from protractile.shell_model.buckling import ShellState, buckle_segments, buckling_modes
-from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.segment.shell import ON_LINE
 from studies.reference_models.benchmarks import PUBLISHED, X, Y, Z, grid, twisted_beam
 from studies.reference_models.finite_strip import Strips
@@ -27,7 +26,7 @@ from studies.reference_models.plates import STEEL, SupportedPlate, rectangle, ri
 from studies.reference_models.single_segment import natural_frequencies, shell_alone
 from studies.reference_models.static_shell import StaticShell, hold
 from studies.wall_buckling import BOXES, COLUMN, PLATES, PRESSED, TUBE, LoadedBox, LoadedPlate
-from tests.shell_model.booms import HELD, box_segment
+from tests.shell_model.booms import HELD, box_segment, reduce_quickly
 from tests.shell_model.conftest import BOX, box_shell
 
 # Lowest natural frequencies in Hz of a box of 10 m on a mesh of 0.5 m: free, and on supports at
@@ -268,7 +267,7 @@ def test_beam_buckles_at_its_largest_moment() -> None:
     supports = Support(0.0), Support(4.0)
     segment = box_segment("beam", 0.0, 4.0, TUBE, load=-8.0e3, supports=supports)
     boom, options = Boom((segment,), ()), ShellOptions(0.1)
-    shell = reduce_boom(boom, options, MPI.COMM_SELF)
+    shell = reduce_quickly(boom, options, fields=True)
     state = ShellState.from_fields(shell.fields, shell.system, equilibrium_at(shell.system))
     (found,) = buckle_segments(boom, shell.meshes, state, options, 1, MPI.COMM_SELF)
     moment = 8.0e3 * 4.0**2 / 8.0
