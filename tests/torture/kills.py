@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Commands that are killed at random moments and repeated.
+"""Commands that are killed at random moments after their imports, and repeated.
 
 Either the old files stay, or all new ones are complete. The next run writes the same files as an
 undisturbed run, to the last byte, and no others.
@@ -24,7 +24,7 @@ from protractile.runs.process.ranks import launcher
 from tests.system.run_folder import ROOT, write_coarse
 from tests.torture.shared_cache import COMMAND, IN_THE_MAKING, Row, left, run_here
 
-# The first moment of all is late in a command, where it writes.
+# The first moment of all is late in a command, whose imports are over then.
 _SEED = 76
 _COMMAND = sys.executable, "-c", COMMAND
 _RANKS = launcher(), "-n", "2", *_COMMAND
@@ -61,7 +61,7 @@ def rows(
         old = left(place / "out")
         write_coarse(place, 0.2)
         begin = time.monotonic()
-        assert _start(place, command).wait() == 0
+        assert _undisturbed(place, arguments)
         lasts = time.monotonic() - begin
         new = left(place / "out")
         breaches = 0
@@ -70,12 +70,13 @@ def rows(
             shutil.copytree(folder / "old", place, symlinks=True)
             write_coarse(place, 0.2)
             process = _start(place, command)
+            while process.poll() is None and not _in_the_making(place):
+                time.sleep(0.005)
             time.sleep(moment)
             _kill(process)
             kept = left(place / "out") in (old, new)
             again = _undisturbed(place, arguments) and left(place / "out") == new
-            rests = [path for path in place.rglob("*") if IN_THE_MAKING in path.name]
-            breaches += not (kept and again) or bool(rests)
+            breaches += not (kept and again) or _in_the_making(place)
         shutil.rmtree(folder / "old")
         yield f"{name}, killed", tries, breaches, "what was there, then what an undisturbed leaves"
 
@@ -87,6 +88,11 @@ def listens(process: subprocess.Popen[Any]) -> bool:
         (caught,) = (line for line in status.splitlines() if line.startswith("SigCgt:"))
         return bool(int(caught.split()[1], 16) & 1 << (signal.SIGTERM - 1))
     return False
+
+
+def _in_the_making(place: Path) -> bool:
+    """Return whether a folder has anything that is not whole yet."""
+    return any(place.rglob(f"*{IN_THE_MAKING}*"))
 
 
 def _undisturbed(place: Path, arguments: Sequence[str]) -> bool:
