@@ -101,14 +101,19 @@ def on_ranks(tmp_path_factory: pytest.TempPathFactory) -> OnRanks:
     return OnRanks(folder, answer)
 
 
-@pytest.mark.usefixtures("few_figures")
+@pytest.mark.usefixtures("few_figures", "unprinted")
 def test_two_ranks_run_shells_and_beams_as_one_does(
     on_ranks: OnRanks, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Reference: one rank, to the last bit, while the boom slews."""
     monkeypatch.chdir(on_ranks.folder)
     assert protractile(*RUN.split(), "one") == 0
-    one, two = (summary_of(Path(folder))["models"] for folder in ("one", "two"))
+    one, two = (summary_of(Path(folder)) for folder in ("one", "two"))
+    # Pictures can be left to later.
+    later = "not requested; protractile snapshot draws them"
+    assert one["snapshots"] == two["snapshots"] == {"written": {}, "skipped": later}
+    assert on_ranks.answer.stdout.count(f"\nno snapshots: {later}\n") == 1
+    one, two = one["models"], two["models"]
     for model in (*one.values(), *two.values()):
         del model["wall_time"], model["seconds"]
     assert one == two

@@ -344,18 +344,12 @@ def test_a_run_without_opengl_says_so_and_goes_on(
 ) -> None:
     refuse = Mock(side_effect=RenderingUnavailable("no OpenGL"))
     monkeypatch.setattr("protractile.runs.report.snapshots.render_motion", refuse)
-    short = write_coarse(tmp_path, 0.02)
-    run = "run", short, "--models", "shell", "--mesh-size", "1", "--out", shells
-    assert protractile(*run) == 0
+    run = "run", write_coarse(tmp_path, 0.02), "--models", "shell", "--mesh-size", "1"
+    assert protractile(*run, "--out", shells) == 0
     assert "\nno snapshots: no OpenGL\n" in capsys.readouterr().out
     assert summary_of(shells)["snapshots"] == {"written": {}, "skipped": "no OpenGL"}
     assert not (shells / "snapshots").exists()
     assert refusal("snapshot", shells) == "snapshots: cannot be made: no OpenGL\n"
-    # Pictures can be left to later.
-    assert protractile(*run, "--no-pictures") == 0
-    later = "not requested; protractile snapshot draws them"
-    assert f"\nno snapshots: {later}\n" in capsys.readouterr().out
-    assert summary_of(shells)["snapshots"] == {"written": {}, "skipped": later}
 
 
 @pytest.mark.usefixtures("few_figures", "_short_film")
