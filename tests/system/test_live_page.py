@@ -63,7 +63,10 @@ def served_page(case: Path, profile: Path) -> Iterator[tuple[Page, LivePage]]:
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
-    with served_page(CASES / "lift.toml", tmp_path_factory.mktemp("profile")) as (opened, _):
+    folder = tmp_path_factory.mktemp("profile")
+    text = (CASES / "lift.toml").read_text("utf-8").replace("duration = 3.0", "duration = 0.5")
+    (folder / "lift.toml").write_text(text, "utf-8")
+    with served_page(folder / "lift.toml", folder) as (opened, _):
         yield opened
 
 
