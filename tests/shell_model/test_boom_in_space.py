@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mpi4py import MPI
 
 from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.segment_model import gap_system
@@ -18,7 +17,6 @@ from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Joint, Load, Support
 from protractile.geometry.box import BoxSection
 from protractile.shell_model.boom_shell import ShellOptions
-from protractile.shell_model.reduced_shell import reduce_boom
 from studies import sections
 from tests.shell_model.booms import (
     LATERAL_LAW,
@@ -27,6 +25,7 @@ from tests.shell_model.booms import (
     boom_in_space,
     box_segment,
     flat_boom,
+    reduce_quickly,
     reduced,
     rigid_state,
 )
@@ -121,7 +120,7 @@ def test_square_boxes_move_alike_in_both_planes(kind: str) -> None:
     if kind == "beam":
         system = gap_system(boom, finite_element_segments(boom, 0.5, "timoshenko", True))
     else:
-        system = reduce_boom(boom, ShellOptions(mesh_size=0.15), MPI.COMM_SELF).system
+        system = reduce_quickly(boom, ShellOptions(mesh_size=0.15)).system
     rest = equilibrium(system, system.gather_loads().load)
     first, second = closed_contact_modes(system, rest)[0][:2]
     assert first == pytest.approx(second, rel=1e-6 if kind == "beam" else 1e-3)

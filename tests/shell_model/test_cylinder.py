@@ -23,13 +23,13 @@ from protractile.geometry.axial import Thrust, with_compression
 from protractile.geometry.boom import Boom, Cylinder, Joint, Load, Segment, Support
 from protractile.geometry.box import BoxSection
 from protractile.shell_model.boom_shell import ShellOptions, segment_mesh
-from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
+from protractile.shell_model.reduced_shell import ReducedShell
 from protractile.shell_model.reduction.krylov import KrylovOptions
 from protractile.shell_model.segment.segment_shell import assemble_segment
 from protractile.shell_model.stress.stresses import ShellStress
 from studies.reference_models.shell_readings import wall_forces
 from studies.reference_models.statics import static_response
-from tests.shell_model.booms import STEEL, boom_in_space, box_segment
+from tests.shell_model.booms import STEEL, boom_in_space, box_segment, reduce_quickly
 from tests.touching import raised, touching
 
 # Thick walls: the section hardly distorts.
@@ -45,7 +45,8 @@ def luffed(cylinder: Cylinder = CYLINDER) -> Boom:
 
 @cache
 def reduced(boom: Boom) -> ReducedShell:
-    return reduce_boom(boom, ShellOptions(0.2, krylov=KrylovOptions(moments=2)), MPI.COMM_WORLD)
+    options = ShellOptions(0.2, krylov=KrylovOptions(moments=2))
+    return reduce_quickly(boom, options, fields=True)
 
 
 def beam(boom: Boom) -> GapSystem:
@@ -147,7 +148,7 @@ def test_a_reduced_column_bends_as_the_full_one_under_its_axial_force() -> None:
     """Reference: other code path, (K − K_G) u = f of all dofs, 1e-5 at 40 % of buckling."""
     boom = column(0.4)
     full = assemble_segment(MPI.COMM_SELF, boom.segments[0], segment_mesh(boom, 0, OPTIONS))
-    found = reduce_boom(boom, OPTIONS, MPI.COMM_SELF)
+    found = reduce_quickly(boom, OPTIONS)
     assert found.critical_factor == pytest.approx(2.5, rel=5e-3)
     system = found.system
     tip = system.observers["tip"].row @ static_response(system, system.load)
@@ -170,7 +171,7 @@ def test_a_pressed_shell_held_by_contacts_tips_over_and_buckles_as_beams() -> No
     joint = Joint(0, 1, stations=(4.5, 6.0), play=0.01, lateral_play=0.01)
     pressed = with_compression((arm, fly), (joint,), [Thrust(1, 10.5, 1.0e5)], gravity=5.0)
     boom = Boom(pressed, (joint,))
-    shell = reduce_boom(touching(boom, law, law), OPTIONS, MPI.COMM_SELF)
+    shell = reduce_quickly(touching(boom, law, law), OPTIONS)
     assert shell.errors["contact_compliance"] < 1e-6
     assert shell.errors["deflections"] < 1e-4
     x = np.linspace(4.5, 10.5, 2001)

@@ -9,7 +9,6 @@ import meshio
 import numpy as np
 import pytest
 import xarray as xr
-from mpi4py import MPI
 
 from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.lines import lines as lines_of_beams
@@ -24,7 +23,6 @@ from protractile.geometry.contact_places import ContactLine
 from protractile.geometry.observation import Observation
 from protractile.runs.pipeline.model_output import write_field_series
 from protractile.shell_model.boom_shell import ShellOptions
-from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.stress.lines import band_boundaries, lines
 from studies import sections
 from studies.reference_models.statics import static_response
@@ -36,6 +34,7 @@ from tests.shell_model.booms import (
     contact_forces,
     flat_boom,
     pressed_rest,
+    reduce_quickly,
     reduced,
     rigid_state,
     three_segments,
@@ -120,7 +119,7 @@ def test_a_pressed_boom_rests_as_its_beams_do(
 def test_a_bonded_joint_has_no_play() -> None:
     """Reference: other code, bonded Timoshenko elements within 0.2 %; no rigid motion."""
     boom = three_segments(bonded=True)
-    shell = reduced(boom, 0.5)
+    shell = reduced(boom, 0.5, whole=True)
     system, beams = shell.system, bonded_beams(boom)
     assert not system.laws
     assert system.frequencies[0] == pytest.approx(beams.frequencies[0], rel=2.0e-3)
@@ -193,7 +192,7 @@ def test_a_boom_without_a_shell_is_refused(boom: Boom, line: ContactLine, messag
 def test_section_forces_of_a_shell_follow_statics() -> None:
     """Reference: by hand, V = 55.07 s, M = −55.07 s²/2, s = 19 − x; −5933.9 N at 2 m."""
     boom = touching(flat_boom(), LAW)
-    shell = reduce_boom(boom, ShellOptions(0.2, contact_tolerance=0.02), MPI.COMM_SELF)
+    shell = reduce_quickly(boom, ShellOptions(0.2, contact_tolerance=0.02), fields=True)
     position = equilibrium(shell.system, shell.system.load)
     outer, inner = lines(shell.fields, boom)
     before, behind = (outer.one_sided_row("shear", 2.0, side) @ position for side in (-1, 1))
@@ -208,7 +207,7 @@ def test_section_forces_of_a_shell_follow_statics() -> None:
 def test_a_pressed_shell_bears_its_loads_across() -> None:
     """Reference: by hand, −100 N/m and −2000 N on a column under half of Euler's force."""
     boom = replace(column(0.5), loads=(Load(0, "z", -2000.0, 8.0, Step()),))
-    shell = reduce_boom(boom, ShellOptions(mesh_size=0.2), MPI.COMM_SELF)
+    shell = reduce_quickly(boom, ShellOptions(mesh_size=0.2), fields=True)
     system = shell.system.gather_loads()
     (line,) = lines(shell.fields, boom)
     found = line.read(static_response(system, system.load))
@@ -222,7 +221,7 @@ def test_a_shell_in_space_bends_and_twists_as_beams_do() -> None:
     """Reference: another model, shear-flexible elements: forces 1 %, deflections 2 %."""
     boom = touching(boom_in_space(sideways=0.4), LAW, LATERAL_LAW)
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
-    shell = reduce_boom(boom, ShellOptions(mesh_size=0.25), MPI.COMM_SELF)
+    shell = reduce_quickly(boom, ShellOptions(mesh_size=0.25), fields=True)
     position, state = (
         equilibrium(system, system.load) for system in (gap_system(boom, models), shell.system)
     )

@@ -24,7 +24,6 @@ from protractile.shell_model.boom_shell import ShellOptions, assemble_segments
 from protractile.shell_model.contact.rows import ShellContacts
 from protractile.shell_model.contact.surface import SurfaceOptions
 from protractile.shell_model.contact.wall_rows import CornerLines, Wall, WallPoints
-from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.reduction.krylov import KrylovOptions
 from protractile.shell_model.reduction.symmetry import SymmetryReduction
 from protractile.shell_model.segment.cross_section import Row
@@ -32,7 +31,7 @@ from protractile.shell_model.stress.lines import lines
 from studies import sections
 from studies.reference_models.statics import static_response
 from tests.beam_model.exact import frequencies
-from tests.shell_model.booms import HELD, STEEL, box_segment, reduce_segment
+from tests.shell_model.booms import HELD, STEEL, box_segment, reduce_quickly, reduce_segment
 from tests.shell_model.conftest import BOX, UNEQUAL, box_shell, compliance
 from tests.touching import touching
 
@@ -178,7 +177,7 @@ def test_a_taper_bends_as_its_beam_and_its_section_forces_are_those_of_statics()
     """
     boom = cantilever("unequal box")
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
-    beam, shell = gap_system(boom, models), reduce_boom(boom, ShellOptions(0.1), MPI.COMM_SELF)
+    beam, shell = gap_system(boom, models), reduce_quickly(boom, ShellOptions(0.1), fields=True)
     expected, rest = (
         static_response(system, system.excitations[0].load) for system in (beam, shell.system)
     )
@@ -199,9 +198,9 @@ def test_walls_of_a_taper_are_on_the_local_section(shape: str) -> None:
     boom = cantilever(shape)
     (shell,) = assemble_segments(boom, ShellOptions(mesh_size=0.2), MPI.COMM_SELF)
     segment, mesh = boom.segments[0], shell.mesh
-    points, walls = mesh.points, np.unique(mesh.triangles[mesh.on_walls])
-    for point in points[walls]:
-        assert segment.section_at(point[0]).on_plates(point[None, 1:]).all()
+    points = mesh.points[np.unique(mesh.triangles[mesh.on_walls])]
+    for x in np.unique(points[:, 0]):
+        assert segment.section_at(x).on_plates(points[points[:, 0] == x, 1:]).all()
 
     def felt(load: Array, beyond: float) -> float:
         moved = np.zeros_like(load)

@@ -16,11 +16,10 @@ from protractile.geometry.box import BoxSection
 from protractile.geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment, strip_lines
 from protractile.geometry.plating import PlatedMesh, add_thickness
 from protractile.shell_model.boom_shell import ShellOptions
-from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.segment.segment_shell import SegmentShell, assemble_segment
 from protractile.shell_model.segment.solver import times
 from studies.reference_models.single_segment import natural_frequencies
-from tests.shell_model.booms import HELD, LAW, STEEL, box_segment, flat_boom
+from tests.shell_model.booms import HELD, LAW, STEEL, box_segment, flat_boom, reduce_quickly
 from tests.shell_model.conftest import BOX, compliance
 from tests.touching import touching
 
@@ -93,7 +92,7 @@ def test_a_thrown_segment_flies_with_its_stiffeners() -> None:
     own |= {"diaphragms": (Diaphragm(9.0, 0.016),), "collars": (Collar((9.0, 9.5), 0.01),)}
     thrown = Load(1, "z", 0.1 * mass, None, Step(), inertial=True)
     stiff = replace(flat_boom(), segments=(outer, replace(inner, **own)), loads=(thrown,))
-    system = reduce_boom(touching(stiff, LAW), ShellOptions(0.5), MPI.COMM_WORLD).system
+    system = reduce_quickly(touching(stiff, LAW), ShellOptions(0.5)).system
     velocity = system.excitations[0].load
     speeds = [system.observers[name].row @ velocity for name in ("tail", "tip")]
     assert speeds == pytest.approx([0.1, 0.1], rel=1.0e-8)

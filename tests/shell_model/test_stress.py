@@ -15,7 +15,6 @@ from protractile.geometry.mesh import diaphragm_breaks, mesh_segment
 from protractile.geometry.plating import PlatedMesh, add_thickness
 from protractile.geometry.profiles import octagon
 from protractile.shell_model.boom_shell import ShellOptions
-from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.segment.segment_shell import assemble_segment
 from protractile.shell_model.stress.fields import gather_stress_modes
 from protractile.shell_model.stress.history import stress_near_places, summarise
@@ -24,7 +23,7 @@ from studies.reference_models.shell_readings import wall_forces
 from studies.second_order import BOX as COLUMN_BOX
 from studies.second_order import CLAMP, CRITICAL, LENGTH, column
 from studies.taper import arm
-from tests.shell_model.booms import LAW, STEEL, box_segment, three_segments
+from tests.shell_model.booms import LAW, STEEL, box_segment, reduce_quickly, three_segments
 from tests.shell_model.conftest import BOX, UNEQUAL
 from tests.touching import touching
 
@@ -107,7 +106,7 @@ def test_von_mises_of_simple_states(membrane: tuple[float, ...], expected: float
 
 def stressed(boom: Boom, size: float = 0.4, load: float = 0.0) -> ShellStress:
     """Return the stresses of a boom at rest under a part of its load, without contact."""
-    shell = reduce_boom(touching(boom, LAW), ShellOptions(size), MPI.COMM_SELF)
+    shell = reduce_quickly(touching(boom, LAW), ShellOptions(size), fields=True)
     omega2 = shell.system.omega2
     rest = np.divide(shell.system.load, omega2, out=np.zeros_like(omega2), where=omega2 > 0.0)
     state = ("time", "mode"), load * rest[None].astype(np.float32)

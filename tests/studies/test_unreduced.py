@@ -24,7 +24,6 @@ from protractile.geometry.boom import Boom, BoomError, Cylinder, Stop
 from protractile.geometry.typography import repeated
 from protractile.shell_model.boom_shell import BoomShell, ShellOptions, assemble_boom
 from protractile.shell_model.contact.rows import ShellContacts
-from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.reduction.krylov import KrylovOptions
 from protractile.shell_model.segment.cross_section import Operator
 from protractile.shell_model.segment.segment_shell import SegmentShell
@@ -35,7 +34,14 @@ from studies.reference_models.resisting_rows import ResistingRows
 from studies.reference_models.unreduced import DirectMotion, integrate_directly
 from tests.other_codes import INSTALLED
 from tests.runs.case_texts import shipped
-from tests.shell_model.booms import HELD, LAW, boom_in_space, flat_boom, three_segments
+from tests.shell_model.booms import (
+    HELD,
+    LAW,
+    boom_in_space,
+    flat_boom,
+    reduce_quickly,
+    three_segments,
+)
 from tests.shell_model.conftest import box_shell
 from tests.touching import touching
 
@@ -84,8 +90,8 @@ def loaded() -> _Loaded:
 
 
 @cache
-def _full(boom: Boom, size: float = 0.5) -> BoomShell:
-    return assemble_boom(touching(boom, _SOFT), ShellOptions(size), MPI.COMM_SELF)
+def _full(boom: Boom) -> BoomShell:
+    return assemble_boom(touching(boom, _SOFT), ShellOptions(1.0), MPI.COMM_SELF)
 
 
 def _way(
@@ -131,9 +137,9 @@ def test_impact_follows_the_reduced_shell() -> None:
     stop = Stop(0, 10.0, 0.002, PowerContact(1.0e11, 2.0, stiffness_below=0.0))
     boom = Boom(flat_boom().segments[:1], (), stops=(stop,))
     krylov = KrylovOptions((5.0, 50.0, 300.0, 1500.0, 8000.0), 4)
-    reduced = reduce_boom(boom, ShellOptions(0.5, krylov=krylov), MPI.COMM_SELF)
+    reduced = reduce_quickly(boom, ShellOptions(1.0, krylov=krylov))
     reference = FixedStep(4.0e-6)(Motion(reduced.system, 0.12))
-    motion = integrate_directly(_full(boom), 0.12, 5.0e-5)
+    motion = integrate_directly(_full(boom), 0.12, 1.0e-4)
     tip, exact = motion.observed["tip"], reference.data["tip"].values
     assert reference.first_contact < 0.1
     assert np.abs(tip - exact).max() < 2.0e-3 * np.ptp(exact)
@@ -167,7 +173,7 @@ def test_friction_and_contact_are_those_of_the_reduced_shell() -> None:
     contact and sticks, only the sum of both forces is unique.
     """
     boom = flat_boom(friction=0.2)
-    system = reduce_boom(touching(boom, _SOFT), ShellOptions(0.5), MPI.COMM_SELF).system
+    system = reduce_quickly(touching(boom, _SOFT), ShellOptions(1.0)).system
     reference = FixedStep(1.0e-5)(Motion(system, 0.4))
     full = _full(boom)
     motion = integrate_directly(full, 0.4, 2.5e-4)

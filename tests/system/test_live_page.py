@@ -63,7 +63,10 @@ def served_page(case: Path, profile: Path) -> Iterator[tuple[Page, LivePage]]:
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
-    with served_page(CASES / "lift.toml", tmp_path_factory.mktemp("profile")) as (opened, _):
+    folder = tmp_path_factory.mktemp("profile")
+    text = (CASES / "lift.toml").read_text("utf-8").replace("duration = 3.0", "duration = 0.5")
+    (folder / "lift.toml").write_text(text, "utf-8")
+    with served_page(folder / "lift.toml", folder) as (opened, _):
         yield opened
 
 
@@ -169,8 +172,8 @@ def test_a_shell_runs_beside_the_beam(tmp_path: Path) -> None:
     """After a cancelled run, the next one shows its results and report."""
     press = "document.getElementById('run').click()"
     progress = "document.getElementById('progress').textContent"
-    case = write_coarse(tmp_path, 0.2)
-    case.write_text(case.read_text("utf-8").replace("mesh_size = 0.25", "mesh_size = 0.5"), "utf-8")
+    case = write_coarse(tmp_path, 0.02)
+    case.write_text(case.read_text("utf-8").replace("mesh_size = 0.25", "mesh_size = 1.0"), "utf-8")
     with served_page(case, tmp_path / "profile") as (page, live):
         page.evaluate(press)
         page.wait_for(f"{progress}.includes(' s)')")

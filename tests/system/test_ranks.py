@@ -1,23 +1,28 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Equal results on two ranks, and messages that are printed once."""
+"""Equal results on two ranks, on one and on several cores, and messages that are printed once."""
 
+import io
+import json
 import re
+import shutil
 import subprocess
 from collections.abc import Callable
+from contextlib import redirect_stdout
 from pathlib import Path
+from typing import NamedTuple
 
+import numpy as np
 import pytest
 import xarray as xr
+from PIL import Image
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
+from mpi4py import MPI
 
-from tests.system.run_folder import (
-    ROOT,
-    protractile,
-    summary_of,
-    write_coarse,
-)
+from tests.conftest import ranks_in
+from tests.shell_model.on_ranks import everything
+from tests.system.run_folder import ROOT, files, protractile, summary_of, write_coarse
 from tests.unprinted import ONE_BLANK_FIGURE
 
 pytestmark = pytest.mark.slow
@@ -25,17 +30,35 @@ pytestmark = pytest.mark.slow
 
 Ranks = Callable[..., subprocess.CompletedProcess[str]]
 
-# Commands one after another, with one figure for the sake of time.
+# Commands one after another, with one figure for the sake of time, and the results of shells.
 COMMANDS = f"""
 {ONE_BLANK_FIGURE}
-import sys
+import json, sys
+from mpi4py import MPI
 from protractile.runs import cli
+from tests.shell_model.on_ranks import everything
 for command in sys.argv[1:]:
     try:
         cli.main(command.replace("runs/", "{ROOT}/runs/").split())
     except SystemExit as ended:
         print(f"status {{ended.code}}")
+answer = everything(MPI.COMM_WORLD)
+if MPI.COMM_WORLD.rank == 0:
+    print(json.dumps(answer))
 """
+RUN = "run slew.toml --models beam-fe,shell --mesh-size 1 --no-cache --no-pictures --out"
+MODELS = "--models", "kantorovich-4,beam-fe-bonded"
+PLAYS = "--vary", "joint.play=0.006:0.014:3"
+# Commands, what each prints once, and its exit status.
+PRINTING = (
+    (f"{RUN} two", "two/report.html", 0),
+    (f"sweep case.toml {' '.join((*PLAYS, *MODELS))} --out swept", "swept/sweep.csv", 0),
+    ("--version", "protractile 0.", 0),
+    ("prove runs/cases/crane-proof.toml", "Proof of a truck crane boom", 1),
+    ("check runs/cases/coarse.toml", "The paper's boom, coarse and short", 0),
+    ("export runs/cases/coarse.toml --to opensees --model beam-fe --out x.py", "x.py", 0),
+    ("run nowhere.toml", "", 2),
+)
 
 # One rank fails while the other waits for it, and does not wait long for the other to speak.
 LONELY_FAILURE = """
@@ -58,19 +81,39 @@ def complaints(answer: subprocess.CompletedProcess[str]) -> list[str]:
     return [line for line in answer.stderr.splitlines() if line.startswith("protractile: ")]
 
 
-@pytest.mark.usefixtures("few_figures")
-def test_two_ranks_run_shells_and_beams_as_one_does(two_ranks: Ranks, here: Path) -> None:
-    """Reference: one rank, to the last bit, while the boom slews."""
-    text = write_coarse(here, 0.02).read_text(encoding="utf-8")
+class OnRanks(NamedTuple):
+    """All commands on two ranks, in one start, since each start imports for seconds."""
+
+    folder: Path
+    answer: subprocess.CompletedProcess[str]
+
+
+@pytest.fixture(scope="module")
+def on_ranks(tmp_path_factory: pytest.TempPathFactory) -> OnRanks:
+    folder = tmp_path_factory.mktemp("ranks")
+    text = write_coarse(folder, 0.02).read_text(encoding="utf-8")
     text = text.replace("play = 0.014", "play = 0.014\nlateral_play = 0.01")
     text += "\n[gravity]\nangle = 30.0\n\n[slew]\ntravel = 1.0\nspeed = 10.0\nramp = 0.05\n"
-    Path("slew.toml").write_text(text, encoding="utf-8")
-    run = "run slew.toml --models beam-fe,shell --mesh-size 1 --no-cache --no-pictures --out "
-    assert protractile(*f"{run}one".split()) == 0
-    answer = two_ranks(COMMANDS, f"{run}two")
-    assert complaints(answer) == []
-    assert answer.stdout.count("status 0\n") == answer.stdout.count("two/report.html") == 1
-    one, two = (summary_of(Path(folder))["models"] for folder in ("one", "two"))
+    (folder / "slew.toml").write_text(text, encoding="utf-8")
+    write_coarse(folder, 0.2)
+    answer = ranks_in(folder)(2, COMMANDS, *(command for command, _, _ in PRINTING))
+    assert answer.returncode == 0, answer.stderr
+    return OnRanks(folder, answer)
+
+
+@pytest.mark.usefixtures("few_figures", "unprinted")
+def test_two_ranks_run_shells_and_beams_as_one_does(
+    on_ranks: OnRanks, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Reference: one rank, to the last bit, while the boom slews."""
+    monkeypatch.chdir(on_ranks.folder)
+    assert protractile(*RUN.split(), "one") == 0
+    one, two = (summary_of(Path(folder)) for folder in ("one", "two"))
+    # Pictures can be left to later.
+    later = "not requested; protractile snapshot draws them"
+    assert one["snapshots"] == two["snapshots"] == {"written": {}, "skipped": later}
+    assert on_ranks.answer.stdout.count(f"\nno snapshots: {later}\n") == 1
+    one, two = one["models"], two["models"]
     for model in (*one.values(), *two.values()):
         del model["wall_time"], model["seconds"]
     assert one == two
@@ -79,31 +122,94 @@ def test_two_ranks_run_shells_and_beams_as_one_does(two_ranks: Ranks, here: Path
         xr.testing.assert_equal(alone, shared)
 
 
-# Commands, what each prints once, and its exit status.
-PRINTING = (
-    ("--version", "protractile 0.", 0),
-    ("prove runs/cases/crane-proof.toml", "Proof of a truck crane boom", 1),
-    ("check runs/cases/coarse.toml", "The paper's boom, coarse and short", 0),
-    ("export runs/cases/coarse.toml --to opensees --model beam-fe --out x.py", "x.py", 0),
-    ("run nowhere.toml", "", 2),
-)
-
-
-def test_two_ranks_print_once(two_ranks: Ranks) -> None:
+def test_two_ranks_print_once(on_ranks: OnRanks) -> None:
     """Reference: one rank, which prints each line once. The first rank has the exit status."""
-    answer = two_ranks(COMMANDS, *(command for command, _, _ in PRINTING))
-    assert answer.returncode == 0
-    statuses = re.findall("^status (.*)$", answer.stdout, re.MULTILINE)
-    assert statuses == [str(status) for _, _, status in PRINTING]
-    for command, once, _ in PRINTING:
-        assert not once or answer.stdout.count(once) == 1, command
-    assert complaints(answer)[-1] == (
+    said = re.split("^status (.*)\n", on_ranks.answer.stdout, flags=re.MULTILINE)
+    assert said[1::2] == [str(status) for _, _, status in PRINTING]
+    for (command, once, _), text in zip(PRINTING, said[::2], strict=False):
+        assert not once or text.count(once) == 1, command
+    *of_proof, of_file = complaints(on_ranks.answer)
+    assert len(of_proof) == len({*of_proof})
+    assert all("/crane-proof.toml: " in line for line in of_proof)
+    assert of_file == (
         "protractile: nowhere.toml: file: does not exist; give the path of a case file"
     )
-    assert len(complaints(answer)) == len({*complaints(answer)})
+
+
+def test_ranks_give_the_serial_results_of_shells(on_ranks: OnRanks) -> None:
+    """Reference: one rank, to the last bit; buckling factors to 1e-8."""
+    serial = everything(MPI.COMM_SELF)
+    found = json.loads(on_ranks.answer.stdout.strip().splitlines()[-1])
+    assert found["rubbing"] == serial["rubbing"]
+    assert np.count_nonzero(serial["rubbing"]["friction_rows"]) > 0
+    assert np.abs(serial["rubbing"]["stresses"]).max() > 1.0e4
+    assert found["accelerated"] == serial["accelerated"]
+    assert 0.0 < serial["buckled"][0] < serial["buckled"][1]
+    assert found["buckled"] == pytest.approx(serial["buckled"], rel=1.0e-8)
+    # Analytic: the dofs of vertices and edges, each once for any partition.
+    assert found["dofs"] == serial["dofs"] == [780, 2220]
 
 
 def test_failure_of_one_rank_ends_both(two_ranks: Ranks) -> None:
     answer = two_ranks(LONELY_FAILURE)
     assert answer.returncode == 3
     assert complaints(answer) == ["protractile: case.toml: model[1]: no number is finite"]
+
+
+@pytest.fixture(scope="module")
+def swept(on_ranks: OnRanks) -> tuple[Path, str]:
+    """Return the folder of a sweep on all cores, and its output."""
+    out = on_ranks.folder / "out"
+    with redirect_stdout(io.StringIO()) as said:
+        command = "sweep", on_ranks.folder / "case.toml", *PLAYS, *MODELS, "--out", out
+        assert protractile(*command) == 0
+    return out, said.getvalue()
+
+
+def stamps(folder: str | Path) -> dict[str, int]:
+    """Return the inode of each point's file, which changes when the file is written again."""
+    points = Path(folder, "points").glob("[!.]*")
+    return {path.name: path.stat().st_ino for path in points}
+
+
+def test_two_ranks_write_the_same_sweep_as_two_cores(
+    on_ranks: OnRanks, swept: tuple[Path, str]
+) -> None:
+    of_ranks, (of_cores, _) = on_ranks.folder / "swept", swept
+    assert (of_ranks / "sweep.csv").read_bytes() == (of_cores / "sweep.csv").read_bytes()
+    assert stamps(of_ranks).keys() == stamps(of_cores).keys()
+
+
+@pytest.mark.usefixtures("in_this_process")
+def test_a_sweep_leaves_its_files_and_is_taken_up(
+    swept: tuple[Path, str], here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder, said = swept
+    assert said.splitlines()[0] == f"{folder}/sweep.csv"
+    assert "Sweep over joint.play: 3 points" in said
+    shutil.copytree(folder, "out")
+    before = stamps("out")
+    assert len(before) == 3
+    expected = {".manifest", "report.html", "sweep.nc", "sweep.csv"}
+    expected |= {"figures/sweep-lines.png", *(f"points/{name}" for name in before)}
+    assert files(Path("out")) == expected
+    with Image.open("out/figures/sweep-lines.png") as image:
+        image.verify()
+    more = "--vary", "joint.play=0.006:0.014:5"
+    assert protractile("sweep", write_coarse(here, 0.2), *more, *MODELS, "--out", "out") == 0
+    assert capsys.readouterr().err == ""
+    after = stamps("out")
+    assert len(after) == 5
+    assert before.items() <= after.items()
+
+
+@pytest.mark.usefixtures("in_this_process")
+def test_failures_are_lines_and_count_if_nothing_is_left(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    hard = "--vary", "time.step=2e-12,1e-11", "--models", "kantorovich-4", "--large"
+    assert protractile("sweep", write_coarse(here, 0.2).name, *hard, "--out", "out") == 3
+    first, second = capsys.readouterr().err.splitlines()
+    opening = "protractile: case.toml: --vary time.step="
+    assert first.startswith(f"{opening}2e-12: kantorovich-4: a step of 2e-12 s makes ")
+    assert second.startswith(f"{opening}1e-11: kantorovich-4: a step of 1e-11 s makes ")

@@ -15,6 +15,7 @@ import meshio
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib.figure import Figure
 from PIL import Image
 
 from protractile.runs.case.build import build_boom
@@ -39,8 +40,9 @@ from tests.system.run_folder import (
     trajectories,
     write_coarse,
 )
+from tests.unprinted import blank
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("unprinted")]
 
 # What a command says of a folder that it refuses.
 Refusal = Callable[[str, Path], str]
@@ -87,7 +89,6 @@ def test_every_file_of_a_series_run_opens(series: Path, refusal: Refusal) -> Non
     xr.testing.assert_identical(results.trajectories, trajectories(series))
 
 
-@pytest.mark.usefixtures("unprinted")
 def test_a_repeated_run_leaves_the_same_and_nothing_else(series: Path, again: Path) -> None:
     """Reference: the first run. Equal arithmetic gives equal numbers."""
     (again / "figures").mkdir()
@@ -102,7 +103,6 @@ def test_a_repeated_run_leaves_the_same_and_nothing_else(series: Path, again: Pa
         assert (again / name).read_bytes() == (series / name).read_bytes()
 
 
-@pytest.mark.usefixtures("unprinted")
 def test_report_and_figures_are_rendered_again_from_the_data(series: Path, again: Path) -> None:
     """Reference: the figures of the report; without a request there are no files."""
     report = again / "report.html"
@@ -239,6 +239,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("whole") / "out"
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("protractile.runs.report.snapshots.render_motion", render_short)
+        patch.setattr(Figure, "savefig", blank)
         assert protractile("run", COARSE, "--out", folder) == 0
     return folder
 
@@ -343,17 +344,12 @@ def test_a_run_without_opengl_says_so_and_goes_on(
 ) -> None:
     refuse = Mock(side_effect=RenderingUnavailable("no OpenGL"))
     monkeypatch.setattr("protractile.runs.report.snapshots.render_motion", refuse)
-    run = "run", write_coarse(tmp_path, 0.02), "--models", "shell", "--out", shells
-    assert protractile(*run) == 0
+    run = "run", write_coarse(tmp_path, 0.02), "--models", "shell", "--mesh-size", "1"
+    assert protractile(*run, "--out", shells) == 0
     assert "\nno snapshots: no OpenGL\n" in capsys.readouterr().out
     assert summary_of(shells)["snapshots"] == {"written": {}, "skipped": "no OpenGL"}
     assert not (shells / "snapshots").exists()
     assert refusal("snapshot", shells) == "snapshots: cannot be made: no OpenGL\n"
-    # Pictures can be left to later.
-    assert protractile(*run, "--no-pictures") == 0
-    later = "not requested; protractile snapshot draws them"
-    assert f"\nno snapshots: {later}\n" in capsys.readouterr().out
-    assert summary_of(shells)["snapshots"] == {"written": {}, "skipped": later}
 
 
 @pytest.mark.usefixtures("few_figures", "_short_film")
@@ -369,7 +365,7 @@ def test_two_shells_of_a_case_keep_their_files_apart(
 
     monkeypatch.setattr("protractile.runs.report.snapshots.render_motion", draw)
     short = write_coarse(tmp_path, 0.02)
-    text = short.read_text(encoding="utf-8").replace("mesh_size = 0.25", "mesh_size = 0.5")
+    text = short.read_text(encoding="utf-8").replace("mesh_size = 0.25", "mesh_size = 1.0")
     shell = text[text.index('[[model]]\nname = "shell"') :].replace('name = "shell"', 'name = "a"')
     text += f"\n{shell}\n" + shell.replace('"a"', '"a-b"').replace("near webs", "across")
     text = text.replace('"outer"', '"b-c"').replace('"inner"', '"c"')

@@ -21,7 +21,7 @@ pytestmark = pytest.mark.slow
 
 
 RUN = "run", COARSE, "--models", "kantorovich-4,timoshenko", "--no-cache"
-SWEEP = "sweep", COARSE, "--models", "timoshenko", "--vary", "joint.play=0.006:0.014:8"
+SWEEP = "sweep", COARSE, "--models", "kantorovich-4", "--vary", "joint.play=0.006:0.014:40"
 
 # A second signal comes while the first one is being obeyed.
 AGAIN = """
@@ -96,7 +96,7 @@ main()
 
 def test_sigterm_ends_a_run_after_meshing(tmp_path: Path) -> None:
     """Reference: by construction. gmsh resets the handler of SIGTERM. MPI leaves no folder."""
-    shell = "run", COARSE, "--models", "shell", "--mesh-size", "0.5", "--no-cache"
+    shell = "run", COARSE, "--models", "shell", "--mesh-size", "1", "--no-cache"
     process = start(tmp_path, "-c", TELLING, *shell, "--no-pictures", "--out", "out")
     wait_for(process, lambda: "shell (1 of 1): reduction" in process.stderr.readline())
     process.terminate()

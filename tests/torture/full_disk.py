@@ -10,20 +10,14 @@ import errno
 import io
 import os
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, redirect_stderr, redirect_stdout, suppress
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, Self
 from unittest.mock import patch
 
-from matplotlib.figure import Figure as Sheet
-from PIL import Image
-
-from protractile.runs import cli
 from protractile.runs.folder.cache import VARIABLE
-from protractile.runs.report.opengl import RenderingUnavailable
-from tests import at_once
 from tests.system.run_folder import write_coarse
-from tests.torture.shared_cache import IN_THE_MAKING, Row, left
+from tests.torture.shared_cache import IN_THE_MAKING, Row, left, run_here
 
 _CHANGES = "mkdir", "rename", "replace", "link", "symlink", "write"
 _WRITES = set("wax+")
@@ -145,51 +139,22 @@ def _torture(
 ) -> Iterator[Row]:
     """Run a command beside the files of another one."""
     place.mkdir(exist_ok=True)
-    assert _run(before)[0] == 0
+    assert run_here(before)[0] == 0
     old = left(place, _SAME)
     disk = Disk(place, float("inf"), 0)
     with disk.in_use():
-        assert _run(command)[0] == 0
+        assert run_here(command)[0] == 0
     new = left(place, _SAME)
     for number in (errno.ENOSPC, errno.EIO):
         done = breaches = 0
         for last in range(0, disk.calls, max(1, disk.calls // tries)):
             if left(place, _SAME) != old:
-                assert _run(before)[0] == 0
+                assert run_here(before)[0] == 0
             with Disk(place, last, number).in_use():
-                status, said = _run(command)
+                status, said = run_here(command)
             done += 1
             whole = left(place, _SAME) == (new if status == 0 else old)
             rests = any(place.rglob(f"*{IN_THE_MAKING}*"))
             breaches += not whole or rests or said != (status != 0)
         what = f"of {disk.calls} calls: what was there, or all that is new, and one line"
         yield f"{name}, {os.strerror(number)}", done, breaches, what
-
-
-def _run(command: Sequence[str]) -> tuple[object, int]:
-    """Return the exit status and the number of lines on stderr."""
-
-    def refuse(*arguments: object) -> None:
-        raise RenderingUnavailable("left out")
-
-    def dot(sheet: Sheet, file: Any, **options: object) -> None:
-        if isinstance(file, io.BytesIO):
-            file.write(b"<svg/>")
-        else:
-            Image.new("L", (1, 1)).save(file)
-
-    status: object = None
-    said = io.StringIO()
-    with redirect_stdout(io.StringIO()), redirect_stderr(said), suppress(SystemExit):
-        try:
-            # Drawings and processes take all the time, and this disk is one process's.
-            with (
-                patch("protractile.runs.report.snapshots.render_motion", refuse),
-                patch("protractile.runs.process.workers.workers", at_once.workers),
-                patch.object(Sheet, "savefig", dot),
-            ):
-                cli.main(command)
-        except SystemExit as ended:
-            status = ended.code
-            raise
-    return status, said.getvalue().count("\n")

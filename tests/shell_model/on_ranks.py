@@ -1,20 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Equal results on one rank and on several, and compilation of forms."""
+"""Results of shells on any number of ranks."""
 
-import json
-import os
-import signal
-import subprocess
-import sys
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
-
-pytest.importorskip("dolfinx", reason="forms are compiled by FFCx")
-
 from mpi4py import MPI
 
 from protractile.geometry.boom import Boom, Pad
@@ -23,23 +13,10 @@ from protractile.shell_model.buckling import ShellState, buckle_segments
 from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.reduction.krylov import KrylovOptions
 from protractile.shell_model.segment.segment_shell import SegmentShell
-from tests.conftest import ranks_in
 from tests.shell_model.booms import HELD, LAW, flat_boom
 from tests.shell_model.conftest import box_shell
 from tests.shell_model.test_stiffeners import short_box
 from tests.touching import touching
-
-pytestmark = pytest.mark.slow
-
-# Prints the results on rank 0.
-_PROGRAM = """
-import json
-from mpi4py import MPI
-from tests.shell_model.test_mpi import everything
-answer = everything(MPI.COMM_WORLD)
-if MPI.COMM_WORLD.rank == 0:
-    print(json.dumps(answer))
-"""
 
 
 def everything(comm: MPI.Comm) -> dict[str, Any]:
@@ -92,65 +69,3 @@ def accelerated(comm: MPI.Comm, shells: list[SegmentShell]) -> list[list[float]]
             rows.append(np.hstack([places.round(9), *(load[dofs - first] for load in loads)]))
     gathered = comm.gather(np.concatenate(rows))
     return None if gathered is None else sorted(np.concatenate(gathered).tolist())
-
-
-def test_ranks_give_the_serial_results(tmp_path: Path) -> None:
-    """Reference: one rank, to the last bit; buckling factors to 1e-8."""
-    serial = everything(MPI.COMM_SELF)
-    done = ranks_in(tmp_path)(2, _PROGRAM)
-    assert done.returncode == 0, done.stderr
-    found = json.loads(done.stdout.strip().splitlines()[-1])
-    assert found["rubbing"] == serial["rubbing"]
-    assert np.count_nonzero(serial["rubbing"]["friction_rows"]) > 0
-    assert np.abs(serial["rubbing"]["stresses"]).max() > 1.0e4
-    assert found["accelerated"] == serial["accelerated"]
-    assert 0.0 < serial["buckled"][0] < serial["buckled"][1]
-    assert found["buckled"] == pytest.approx(serial["buckled"], rel=1.0e-8)
-    # Analytic: the dofs of vertices and edges, each once for any partition.
-    assert found["dofs"] == serial["dofs"] == [780, 2220]
-
-
-ROOT = Path(__file__).parents[2]
-COMPILE = """
-import os, signal
-import ffcx.codegeneration.jit as compiler
-from mpi4py import MPI
-from dolfinx import fem, mesh
-import ufl
-from protractile.shell_model import compat
-domain = mesh.create_unit_interval(MPI.COMM_SELF, 2)
-if {killed}:
-    compiler._compile_objects = lambda *_, **__: os.kill(os.getpid(), signal.SIGKILL)
-one = fem.Constant(domain, 3.0)
-print(fem.assemble_scalar(fem.form(one * ufl.dx(domain=domain))))
-"""
-
-
-def compile_form(
-    folder: Path, killed: bool, **environment: str
-) -> subprocess.CompletedProcess[str]:
-    """Compile and evaluate a form. Reference: analytic, the integral of 3 over a unit."""
-    outside = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_", "PMI"))}
-    return subprocess.run(
-        [sys.executable, "-c", COMPILE.format(killed=killed)],
-        env=outside | {"PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(folder)} | environment,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-
-
-def test_only_the_first_compilation_needs_a_compiler_even_if_one_was_killed(
-    tmp_path: Path,
-) -> None:
-    """Reference: by construction. The last line names the compiler and the packages."""
-    assert compile_form(tmp_path, True).returncode == -signal.SIGKILL
-    assert list((tmp_path / "fenics" / "protractile").glob("*.c"))
-    missing = compile_form(tmp_path, False, CC="/no/cc").stderr.splitlines()[-1]
-    assert "/no/cc" in missing
-    assert missing.endswith(
-        "; the forms of a shell are compiled once, which needs a C compiler and Python's headers: "
-        "apt install gcc python3-dev, or dnf install gcc python3-devel: 'CC'"
-    )
-    assert compile_form(tmp_path, False).stdout == "3.0\n"
-    assert compile_form(tmp_path, False, CC="/no/cc").stdout == "3.0\n"
