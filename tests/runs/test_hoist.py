@@ -341,7 +341,8 @@ def bar_case(bending: float, duration: float, **hoist: object) -> Case:
     text += elements("beam", theory="euler-bernoulli", element_length=4.0)
     text += table("[hoist]", **{**BAR_HOIST, **hoist})
     case = Case.model_validate(tomllib.loads(text))
-    return change(case, **{"time.duration": duration, "time.output_step": 5e-3})
+    times = {"time.duration": duration, "time.output_step": 5e-3, "time.step": 2e-4}
+    return change(case, **times)
 
 
 @pytest.mark.slow
