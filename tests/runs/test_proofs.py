@@ -215,7 +215,7 @@ def test_cycles_of_a_motion(tmp_path: Path) -> None:
     text = edited(
         ARM,
         ("{ partial", "{ detail_category = 80.0, partial"),
-        ("= 1.0 }", "= 4.0 }"),
+        ("= 1.0 }", "= 4.0, output_step = 4e-3 }"),
         ('["empty", "loaded"]', '["loaded", "loaded"]\nmotion = true'),
         (STORM, ""),
     )
