@@ -16,12 +16,7 @@ import pytest
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.excitation import Excitation, Sine
 from protractile.dynamics.gap_system import Observer
-from protractile.dynamics.integrator import (
-    AdaptiveStep,
-    FixedStep,
-    Integrator,
-    StepSchedule,
-)
+from protractile.dynamics.integrator import AdaptiveStep, FixedStep, Integrator, StepSchedule
 from protractile.dynamics.kernels import march
 from protractile.dynamics.motion import MOST_STEPS, Motion
 from protractile.runs.pipeline.models import MotionPlan

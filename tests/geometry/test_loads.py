@@ -8,12 +8,7 @@ import numpy as np
 import pytest
 
 from protractile.dynamics.excitation import PiecewiseLinear, Step
-from protractile.geometry.axial import (
-    AxialChange,
-    Thrust,
-    axial_force,
-    with_compression,
-)
+from protractile.geometry.axial import AxialChange, Thrust, axial_force, with_compression
 from protractile.geometry.boom import BoomError, Collar, Diaphragm, Joint, PointMass, Segment
 from protractile.geometry.cylinder import Cylinder, EarthPoint
 from protractile.geometry.head import Head

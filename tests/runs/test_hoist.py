@@ -22,15 +22,9 @@ from protractile.dynamics.damping import closed_contact_damping, closed_contact_
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.runs import CASES
 from protractile.runs.case.build import build_boom
-from protractile.runs.case.combination_tables import (
-    CombinationTable,
-    LoadCaseTable,
-)
+from protractile.runs.case.combination_tables import CombinationTable, LoadCaseTable
 from protractile.runs.case.combinations import check_combinations, combined_cases
-from protractile.runs.case.load_tables import (
-    LoadTable,
-    RopeTable,
-)
+from protractile.runs.case.load_tables import LoadTable, RopeTable
 from protractile.runs.case.motion_tables import HoistTable, WindTable
 from protractile.runs.case.motions import with_initial_slack
 from protractile.runs.case.reading import CheckedCase, select

@@ -9,10 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from protractile.analysis.plate_buckling import (
-    PlateStresses,
-    reduced_stress,
-)
+from protractile.analysis.plate_buckling import PlateStresses, reduced_stress
 from protractile.analysis.rows import Row, Rows, static_rows
 from protractile.cases import run_case
 from protractile.geometry.box import BoxSection

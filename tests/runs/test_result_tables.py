@@ -15,11 +15,7 @@ from protractile.cases import change, run_case
 from protractile.runs.pipeline.design_results import DesignResults
 from protractile.runs.pipeline.results import Results
 from protractile.runs.report.labels import label
-from protractile.runs.report.result_tables import (
-    play_table,
-    rest_tables,
-    result_tables,
-)
+from protractile.runs.report.result_tables import play_table, rest_tables, result_tables
 from protractile.runs.report.summary_table import (
     deviation_note,
     play_effect,

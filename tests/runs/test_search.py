@@ -26,16 +26,7 @@ from protractile.runs.sweep.sampling import QUANTILES, normal_points
 from protractile.runs.sweep.search import rigid_wall_cautions
 from protractile.runs.sweep.variation import numbers
 from tests.docs.conftest import toml_blocks
-from tests.runs.case_texts import (
-    CANTILEVER,
-    LOAD,
-    MASS,
-    THIN,
-    edited,
-    shipped,
-    static_tip,
-    table,
-)
+from tests.runs.case_texts import CANTILEVER, LOAD, MASS, THIN, edited, shipped, static_tip, table
 from tests.runs.summaries import printed, run
 from tests.system.run_folder import protractile
 

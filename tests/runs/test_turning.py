@@ -32,11 +32,7 @@ from protractile.runs.cautions.context import Context, State
 from protractile.runs.cautions.response import swings, turning
 from protractile.runs.pipeline.estimates import Preview
 from protractile.runs.pipeline.models import axial_travels
-from protractile.runs.pipeline.turning import (
-    drive_moments,
-    shaper_lines,
-    turning_lines,
-)
+from protractile.runs.pipeline.turning import drive_moments, shaper_lines, turning_lines
 from protractile.runs.report.drive_tables import luffing_table
 from tests.runs.case_texts import read_case, refused, shipped
 from tests.runs.summaries import static_tip
