@@ -421,9 +421,9 @@ def test_table_page_and_files(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_shell_agrees_at_the_capacity_of_beams() -> None:
-    """Reference: other code, a shell of the flexible boom at two radii."""
+    """Reference: other code, a shell of the flexible boom."""
     tables = flexible("cylinder")
-    tables["chart"]["radii"] = [5.0, 10.0]
+    tables["chart"]["radii"] = [10.0]
     tables["model"].append({"name": "shell", "kind": "shell", "mesh_size": 0.4})
     case = weak(pt.load_case(tables), 2.0e5)
     context = BuildContext(single_rank(1))

@@ -62,10 +62,8 @@ def test_bar_turned_with_a_constant_acceleration() -> None:
 
 
 def slewing_arm(tmp_path: Path, *tables: str, arm: str = ARM) -> Case:
-    gust, models = arm.index("[wind]"), arm.index("[[model]]")
-    case = read_case(tmp_path, arm[:gust] + "\n".join(tables) + "\n" + arm[models:])
-    nothing = dict.fromkeys(("load_cases", "combinations", "spectra"), ())
-    return case.model_copy(update=nothing | {"models": case.models[1:2]})
+    elements = f"[[model]]{arm.split('[[model]]')[2]}"
+    return read_case(tmp_path, "\n".join([arm[: arm.index("[wind]")], *tables, elements]))
 
 
 @pytest.mark.slow
