@@ -53,9 +53,7 @@ def test_bonded_boom_has_the_exact_frequencies(paper_boom: Boom) -> None:
     np.testing.assert_allclose(np.log2(errors[1][2:] / errors[2][2:]), 4.0, atol=0.1)
 
 
-def test_bonded_series_converges_to_the_bonded_elements(
-    paper_boom: Boom,
-) -> None:
+def test_bonded_series_converges_to_the_bonded_elements(paper_boom: Boom) -> None:
     """Reference: other code, Hermite elements, with twelve terms a segment."""
     beams = gap_system(paper_boom.bonded, beam_elements(paper_boom, 0.25))
     found = gap_system(paper_boom.bonded, beam_series(paper_boom, (12, 12), "complete"))

@@ -1,19 +1,26 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Histories of loads, and motions under them."""
+"""Excited and hanging loads."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from protractile.dynamics.arrays import Array
 from protractile.dynamics.excitation import Excitation, PiecewiseLinear, Ramp, Sine, Step
+from protractile.dynamics.frame_motion import FrameAcceleration, FrameMotion
 from protractile.dynamics.gap_system import GapSystem, Observer
+from protractile.dynamics.hanging_load import HangingLoad, Pendulum
 from protractile.dynamics.integrator import FixedStep
-from protractile.dynamics.motion import Motion
+from protractile.dynamics.motion import Motion, build_motion
+from protractile.dynamics.motion_laws import HistorySum, MotionLaw, SCurve, Shaped, Spline, Stroke
+from protractile.dynamics.trajectory import Trajectory
 from tests.dynamics.reference import slopes
+from tests.dynamics.test_telescoping import lossy
 from tests.modal import modal_system, one_mass
 
 # ω in rad/s of 1 kg on a spring: free, as slow as a boom, as fast as the plates of a shell.
@@ -190,3 +197,200 @@ def test_bad_values_are_refused(
 ) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         history(*arguments)
+
+
+MASS, ROPE, GRAVITY, SPEED = 1000.0, 1.0e6, 10.0, 0.5
+
+
+def mass_on_springs() -> GapSystem:
+    """Return a tip of 500 kg on springs of 2 MN/m across and 0.5 MN/m sideways, without loads."""
+    tip, aside = (Observer(row) for row in np.eye(2) / np.sqrt(500.0))
+    seen = {"tip": tip, "tip_lateral": aside}
+    return modal_system([2.0e6 / 500.0, 0.5e6 / 500.0], np.zeros(2), observers=seen)
+
+
+RIGID = replace(mass_on_springs(), omega2=np.full(2, 1.0e16))
+
+
+def hoisted(
+    load: HangingLoad, system: GapSystem, duration: float, step: float, output: float = 1.0e-3
+) -> Trajectory:
+    """Return the motion of a system's tip and its load from rest."""
+    hung = load.attach(system, system.observers["tip"].row, 1.0)
+    motion = build_motion(hung, duration, output, at_rest=True)
+    return load.separate_rope(FixedStep(step)(motion))
+
+
+def test_factor_of_a_rigid_boom() -> None:
+    """Reference: analytic, φ₂ = 1 + (v/g) √(k/m) of a load lifted at the speed v after its slack. A
+    load on a rope of constant length rests.
+    """
+    load, slack = HangingLoad(MASS, ROPE, GRAVITY, Stroke(3.0, SPEED), slack=0.02), 0.02
+    motion = hoisted(load, RIGID, 1.0, 1.0e-4)
+    factor = motion.data["rope_force_peak"].values.max() / load.weight
+    # The ground gives way by a hundredth of the rope's stretch.
+    assert factor == pytest.approx(1.0 + SPEED / GRAVITY * np.sqrt(ROPE / MASS), rel=1e-3)
+    raised = motion.data["rope_force"].values >= load.weight
+    lifted = (load.weight / ROPE + slack) / SPEED
+    assert motion.time[raised.argmax()] == pytest.approx(lifted, abs=2e-3)
+    assert motion.energy_residual < 1e-12
+    data = hoisted(HangingLoad(MASS, ROPE, GRAVITY), mass_on_springs(), 0.2, 1.0e-3).data
+    assert data["rope_force"].values == pytest.approx(np.full(201, MASS * GRAVITY), rel=1e-5)
+    assert data["tip"].values == pytest.approx(np.full(201, -MASS * GRAVITY / 2.0e6), rel=1e-5)
+
+
+def test_load_under_a_boom_at_constant_slewing_speed() -> None:
+    """Reference: analytic. The load swings with √(g/l) ± ψ̇ about ψ̇² R l/(g − ψ̇² l) outwards."""
+    rate, own = np.deg2rad(10.0), np.sqrt(GRAVITY / 3.0)
+    frame = FrameMotion(slew=Stroke(900.0, 10.0, 10.0), radius=-1.0)
+    load = HangingLoad(MASS, ROPE, GRAVITY, pendulum=Pendulum(3.0, frame, 11.0, HistorySum(())))
+    data = hoisted(load, RIGID, 25.0, 5.0e-3, output=0.02).data
+    late = data["time"].values > 10.0
+    time = data["time"].values[late]
+    waves = [wave((own + sign * rate) * time) for sign in (-1.0, 1.0) for wave in (np.cos, np.sin)]
+    fit = np.column_stack([np.ones(time.size), *waves])
+    out = rate**2 * 10.0 * 3.0 / (GRAVITY - rate**2 * 3.0)
+    for name, place in (("swing_out", out), ("swing_aside", 0.0)):
+        swung = data[name].values[late]
+        (found, *_), *_ = np.linalg.lstsq(fit, swung, rcond=None)
+        assert found == pytest.approx(place, abs=1e-3 * out)
+        assert np.ptp(swung) > 0.1 * out
+
+
+def test_load_swings_during_slewing_and_luffing() -> None:
+    """Reference: other code, scipy's DOP853 with Coriolis, Euler and centrifugal terms. Order 2."""
+    frame = FrameMotion(SCurve(80.0, 2.0), Stroke(-20.0, 15.0, 0.5), 50.0, 0.5, 0.3, -1.0)
+    place, out, length = 9.0, SCurve(1.0, 2.0), 3.0
+    wind = Ramp(0.5)
+    swing = Pendulum(length, frame, place, out, [("y", 300.0, wind)])
+    load = HangingLoad(MASS, ROPE, GRAVITY, pendulum=swing)
+
+    def rates(time: float, state: np.ndarray) -> np.ndarray:
+        (w, v, z, r, t), speeds = state[:5], state[5:]
+        now = np.array(time)
+        luffed = frame.luff_angle(now)
+        slewed, turn, faster = (frame.slew_angle(now, order) for order in range(3))
+        along, aside, across = frame.accelerations(now, place, out)
+        radial = along * np.cos(luffed) - across * np.sin(luffed)
+        up = along * np.sin(luffed) + across * np.cos(luffed)
+        # The tip's deflection is so small that the frame does not accelerate it further.
+        rope = ROPE * max(w * np.cos(luffed) - z, 0.0)
+        pull = MASS * GRAVITY / length * np.array([r + w * np.sin(luffed), t - v])
+        blown = 300.0 * wind(now) * np.array([np.sin(slewed), np.cos(slewed)])
+        turned = [
+            2.0 * turn * speeds[4] + faster * t + turn**2 * r - radial,
+            -2.0 * turn * speeds[3] - faster * r + turn**2 * t - aside,
+        ]
+        forces = [
+            (-2.0e6 * w - np.cos(luffed) * rope - np.sin(luffed) * pull[0]) / 500.0,
+            (-0.5e6 * v + pull[1]) / 500.0,
+            rope / MASS - GRAVITY - up,
+            *((blown - pull) / MASS + turned),
+        ]
+        return np.concatenate([speeds, forces])
+
+    sagged = -MASS * GRAVITY * np.cos(np.deg2rad(50.0)) / 2.0e6
+    stretched = sagged * np.cos(np.deg2rad(50.0)) - MASS * GRAVITY / ROPE
+    start = [sagged, 0.0, stretched, -sagged * np.sin(np.deg2rad(50.0)), 0.0, *np.zeros(5)]
+    times = 1.0e-2 * np.arange(251)
+    exact = solve_ivp(rates, (0.0, 2.5), start, "DOP853", times, rtol=1e-8, atol=1e-10).y
+    swung = exact[3] + exact[0] * np.sin(frame.luff_angle(times)), exact[4] - exact[1]
+    errors = []
+    for step in (2.0e-3, 1.0e-3):
+        motion = hoisted(load, mass_on_springs(), 2.5, step, output=0.01)
+        found = [motion.data[name].values for name in ("swing_out", "swing_aside", "tip")]
+        pairs = zip(found, (*swung, exact[0]), strict=True)
+        errors.append(max(np.abs(one - other).max() for one, other in pairs))
+        assert motion.energy_residual < 1e-11
+    assert np.abs(swung).max() > 0.5
+    assert errors[0] < 1e-3
+    assert errors[1] < 0.3 * errors[0]
+
+
+def test_hoisting_while_a_segment_extends() -> None:
+    """Reference: the energy balance, including the work of both drives."""
+    system = lossy(SCurve(5.0, 0.4))
+    tip = next(iter(system.observers.values())).row
+    load = HangingLoad(0.5, 200.0, GRAVITY, SCurve(0.3, 0.3, start=0.05))
+    hung = load.attach(system, tip, 1.0)
+    motion = FixedStep(1.0e-3)(build_motion(hung, 0.4, 0.01, at_rest=False))
+    assert motion.energy_residual < 1e-11
+    assert len(hung.travels) == len(system.travels) + 1
+
+
+LAWS: list[MotionLaw] = [
+    SCurve(30.0, 2.0, 0.3),
+    Stroke(30.0, 12.0, 0.8, 0.2),
+    HistorySum((SCurve(30.0, 2.0), Stroke(-10.0, 5.0, 1.0))),
+    Spline((0.1, 0.9, 2.0, 2.6), (0.0, 3.0, -2.0, 7.0)),
+    Shaped(Stroke(30.0, 12.0, 0.8, 0.2), 1.7, 0.1),
+]
+TIME = np.linspace(0.013, 3.013, 61)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_rates(law: MotionLaw) -> None:
+    """Reference: central differences."""
+    h = 1.0e-4
+    # Differences across a jump of the second derivative are no reference.
+    time = TIME[np.abs(np.subtract.outer(TIME, np.array(law.kinks))).min(axis=1) > h]
+    before, now, after = (law(time + shift) for shift in (-h, 0.0, h))
+    assert law.rate(time, 1) == pytest.approx((after - before) / (2.0 * h), abs=1e-5)
+    assert law.rate(time, 2) == pytest.approx((after - 2.0 * now + before) / h**2, abs=1e-4)
+
+
+@pytest.mark.parametrize("depth", [0.0, 0.6])
+def test_accelerations(depth: float) -> None:
+    """Reference: second differences of the position in fixed axes, with both angles; analytic for
+    the components of the weight.
+    """
+    frame = FrameMotion(LAWS[0], LAWS[1], 35.0, foot=0.5, depth=depth, radius=-1.2)
+    extension, x, h = SCurve(2.0, 2.5), 9.0, 1.0e-4
+    time = TIME[np.abs(np.subtract.outer(TIME, np.array(LAWS[1].kinks))).min(axis=1) > h]
+
+    def position(time: Array) -> Array:
+        (out, up), turn = frame.position(time, x, extension), frame.slew_angle(time)
+        return np.array([out * np.cos(turn), out * np.sin(turn), up])
+
+    start = frame.position(np.zeros(1), x, extension)
+    turned = complex(8.5, depth) * np.exp(1j * np.deg2rad(35.0))
+    assert np.concatenate(start) == pytest.approx([turned.real - 1.2, turned.imag])
+    places = [position(time + shift) for shift in (-h, 0.0, h)]
+    one, two, three = (places[2] - 2.0 * places[1] + places[0]) / h**2
+    slew, luff = frame.slew_angle(time), frame.luff_angle(time)
+    out = one * np.cos(slew) + two * np.sin(slew)
+    sideways = two * np.cos(slew) - one * np.sin(slew)
+    expected = [
+        out * np.cos(luff) + three * np.sin(luff), sideways,
+        three * np.cos(luff) - out * np.sin(luff),
+    ]  # fmt: skip
+    assert frame.accelerations(time, x, extension) == pytest.approx(np.array(expected), abs=1e-5)
+    # Weight: g cos α across and g sin α along the boom, less those at t = 0.
+    frame = FrameMotion(luff=SCurve(50.0, 1.0), angle=20.0, gravity=10.0)
+    parts: tuple[tuple[Literal["x", "z"], np.ufunc], ...] = ("x", np.sin), ("z", np.cos)
+    for direction, function in parts:
+        change = 10.0 * (function(np.deg2rad(70.0)) - function(np.deg2rad(20.0)))
+        history = FrameAcceleration(frame, direction, 3.0)
+        assert history(np.array([0.0, 2.0])) == pytest.approx([0.0, change])
+
+
+@pytest.mark.parametrize("depth", [0.0, 0.6])
+def test_drives_do_the_work_of_a_mass_on_the_boom(depth: float) -> None:
+    """Reference: the change of kinetic and potential energy over their power, by differences."""
+    frame = FrameMotion(LAWS[0], LAWS[1], 35.0, 0.5, depth, -1.2, gravity=10.0)
+    resting, x, h = HistorySum(()), 9.0, 1.0e-4
+    kinks = np.array([*LAWS[0].kinks, *LAWS[1].kinks])
+    time = TIME[np.abs(np.subtract.outer(TIME, kinks)).min(axis=1) > 3.0 * h]
+
+    def energy(at: Array) -> Array:
+        def place(at: Array) -> Array:
+            (out, up), turn = frame.position(at, x, resting), frame.slew_angle(at)
+            return np.array([out * np.cos(turn), out * np.sin(turn), up])
+
+        speed = (place(at + h) - place(at - h)) / (2.0 * h)
+        return 3.0 * (0.5 * (speed**2).sum(axis=0) + 10.0 * place(at)[2])
+
+    rates = frame.slew_angle(time, 1), frame.luff_angle(time, 1)
+    power = (frame.drive_moments(time, x, 3.0, resting) * np.array(rates)).sum(axis=0)
+    change = (energy(time + h) - energy(time - h)) / (2.0 * h)
+    assert power == pytest.approx(change, abs=1.0e-4)

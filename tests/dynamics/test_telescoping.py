@@ -203,9 +203,7 @@ def test_a_moving_force_on_a_beam() -> None:
 
 
 @pytest.mark.parametrize("drawn", [lossy, pressed_along])
-def test_constant_travel_equals_no_travel_to_the_bit(
-    drawn: Callable[[History], GapSystem],
-) -> None:
+def test_constant_travel_equals_no_travel_to_the_bit(drawn: Callable[[History], GapSystem]) -> None:
     """Reference: non-regression, the same system without a travel."""
     moving = drawn(PiecewiseLinear([0.0, 1.0], [0.0, 0.0]))
     resting = replace(moving, travels=())

@@ -22,12 +22,7 @@ from protractile.geometry.arrays import Array, Indices
 from protractile.geometry.boom import Boom, Collar, Diaphragm, Pad
 from protractile.geometry.box import BoxSection
 from protractile.geometry.grading import graded_mesh
-from protractile.geometry.mesh import (
-    SegmentMesh,
-    collar_breaks,
-    diaphragm_breaks,
-    mesh_segment,
-)
+from protractile.geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
 from protractile.geometry.plating import add_thickness, plain_thickness
 from protractile.geometry.refinement import RefinementZone, refinement_zones
 from protractile.geometry.section import COMPONENT, Section

@@ -18,6 +18,8 @@ from protractile.runs.case.build import build_boom
 from protractile.runs.case.reading import load, load_checked, select
 from protractile.runs.case.schema import Case, EnsembleTable, case_schema
 from protractile.runs.case.usual_values import usual_of_tables
+from protractile.runs.cautions.context import Context
+from protractile.runs.cautions.rules import OF_INPUTS, cautions
 from tests.runs.bad_edits import BAD_EDITS
 from tests.runs.case_texts import (
     CASES,
@@ -205,7 +207,10 @@ def faults(case: dict[str, Any]) -> list[str]:
 
 @pytest.mark.parametrize("path", sorted(pt.CASES.glob("*.toml")), ids=lambda path: path.stem)
 def test_shipped_cases_are_valid_and_read_back_as_themselves(path: Path) -> None:
-    case = load(str(path))
+    """They have no cautions."""
+    checked = load_checked(str(path))
+    case = checked.case
+    assert cautions(Context(case, checked.boom), OF_INPUTS) == []
     written = toml.dumps(case)
     assert faults(tomllib.loads(path.read_text(encoding="utf-8"))) == []
     assert faults(tomllib.loads(written)) == []

@@ -302,7 +302,7 @@ def test_a_joint_of_a_shell_rotates_by_walls(tmp_path: Path) -> None:
     flange or on the corners.
     """
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
-    keys = {"kind": "shell", "mesh_size": 0.2, "contact_tolerance": "any"}
+    keys = {"kind": "shell", "mesh_size": 0.4, "contact_tolerance": "any"}
     shell, found = table("[[model]]", name="shell", **keys), {}
     for bears in ("offset = 0.05", 'bears = "corner"'):
         text = boom_of(STEP, OF_PADS.replace("}", f", {bears} }}")) + shell

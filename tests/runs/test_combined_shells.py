@@ -4,6 +4,7 @@
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -34,6 +35,7 @@ from protractile.runs.pipeline.combined_shells import shell_states
 from protractile.runs.pipeline.models import build
 from protractile.runs.pipeline.proofs import prove
 from protractile.runs.process.terminal import shorten
+from protractile.runs.report import terminal_tables
 from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
 from tests.runs.case_texts import read_case, shipped
 from tests.runs.case_texts import table as case_table
@@ -162,7 +164,7 @@ TEXT = (
     """
 model = [
   { name = "beam", kind = "finite-element" },
-  { name = "shell", kind = "shell", mesh_size = 0.3, contact_tolerance = "any" },
+  { name = "shell", kind = "shell", mesh_size = 0.4, contact_tolerance = "any" },
 ]
 buckling = { modes = 1 }
 """
@@ -181,8 +183,7 @@ buckling = { modes = 1 }
 def states(tmp_path_factory: pytest.TempPathFactory) -> list[CombinationState]:
     case = read_case(tmp_path_factory.mktemp("shell"), TEXT)
     shell = case.models[1]
-    # The command takes these shells from the cache.
-    return shell_states(case, shell, BuildContext(MPI.COMM_WORLD, cache=Cache.of_user()))
+    return shell_states(case, shell, BuildContext(MPI.COMM_WORLD))
 
 
 def test_one_shell_serves_combinations_of_a_geometry(states: list[CombinationState]) -> None:
@@ -239,12 +240,19 @@ def test_proofs_by_patches_and_factors(states: list[CombinationState], tmp_path:
 
 
 def test_the_command_takes_a_shell(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    states: list[CombinationState],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.setenv("COLUMNS", "80")
+    taken = Mock(return_value=states)
+    monkeypatch.setattr(terminal_tables, "shell_states", taken)
     path = tmp_path / "lift.toml"
     path.write_text(TEXT, encoding="utf-8")
     assert protractile("prove", path, "--shell", "shell") in (0, 1)
+    (case, shell, _), _ = taken.call_args
+    assert shell == case.models[1]
     shown = capsys.readouterr().out
     assert "By shell, with the axial forces of each combination." in shown
     assert max(map(len, shown.splitlines())) <= 80

@@ -140,7 +140,7 @@ def test_shells_take_wind_rope_and_head_as_beams_do(tmp_path: Path, tools: Build
         + table("[wind]", pressure=1200.0, shape_factor=1.4)
         + table("[head]", ahead=1.2, below=0.9)
     )
-    shell = table("[[model]]", name="shell", kind="shell", mesh_size=0.1)
+    shell = table("[[model]]", name="shell", kind="shell", mesh_size=0.3)
     text = (DRAWN + JACK).replace("mass = 150.0", "mass = 900.0") + shell
     tips = []
     for more in ("", loads):

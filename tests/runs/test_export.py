@@ -143,7 +143,7 @@ def readings(deck: Path) -> dict[str, float]:
         # Between webs there is no bending of walls.
         ("coarse", None, 1e-4),
         # Pads on flanges, a cylinder, three segments; axial forces add 1.5 % to the tip.
-        ("lift", 0.06, 0.01),
+        ("lift", 0.07, 0.01),
     ],
 )
 def test_a_boom_rests_in_calculix_as_here(
@@ -173,7 +173,7 @@ def test_a_boom_rests_in_calculix_as_here(
 @pytest.mark.slow
 def test_axial_force_softens_a_boom_as_large_displacements_do_in_calculix(tmp_path: Path) -> None:
     """Reference: other code, CalculiX with NLGEOM, 40 % of Euler's force, which adds 64 %."""
-    boom, options = column(0.4), ShellOptions(mesh_size=0.2)
+    boom, options = column(0.4), ShellOptions(mesh_size=0.4)
     (arm,) = boom.segments
     shell = assemble_segment(MPI.COMM_SELF, arm, segment_mesh(boom, 0, options))
     end, (thrust,) = shell.outline(arm.end), arm.compression(np.array([arm.end - 1e-3]))
@@ -194,17 +194,17 @@ def test_axial_force_softens_a_boom_as_large_displacements_do_in_calculix(tmp_pa
 @CALCULIX_INSTALLED
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("box", "n", "tolerance"),
+    ("box", "n", "count", "tolerance"),
     [
         # A column, which bends in two directions at equal factors.
-        (COLUMN._replace(compression=5.0e8), 2, 1e-4),
-        # Walls of a tube, b/t = 100.
-        (BOXES[0]._replace(length=0.6, compression=4.0e7), 16, 1e-3),
+        (COLUMN._replace(compression=5.0e8), 2, 2, 1e-4),
+        # Walls of a tube, b/t = 100, as long as wide.
+        (BOXES[0]._replace(length=0.2, compression=4.0e7), 16, 1, 1e-3),
     ],
     ids=["column", "walls"],
 )
 def test_boxes_buckle_in_calculix_as_here(
-    tmp_path: Path, box: LoadedBox, n: int, tolerance: float
+    tmp_path: Path, box: LoadedBox, n: int, count: int, tolerance: float
 ) -> None:
     """Reference: other code, linear buckling by CalculiX on the same mesh."""
     shell, load, forces = box.pressed(n)
@@ -213,8 +213,9 @@ def test_boxes_buckle_in_calculix_as_here(
     (tmp_path / "box.inp").write_text(text, "utf-8")
     subprocess.run(["ccx", "box"], cwd=tmp_path, check=True, capture_output=True)
     lines = (tmp_path / "box.dat").read_text()
-    found = sorted(map(float, re.findall(r"^ +\d+ +(\d\.\d+E[+-]\d+)$", lines, re.M)))[:2]
-    assert found == pytest.approx(buckling_modes(shell, forces, 2).factors, rel=tolerance)
+    found = sorted(map(float, re.findall(r"^ +\d+ +(\d\.\d+E[+-]\d+)$", lines, re.M)))[:count]
+    own = buckling_modes(shell, forces, 2).factors[:count]
+    assert found == pytest.approx(own, rel=tolerance)
 
 
 @pytest.mark.parametrize(

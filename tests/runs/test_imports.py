@@ -17,7 +17,7 @@ from protractile.runs import CASES, clients
 from protractile.runs.folder.versions import packages, sources
 from protractile.runs.paper.verdicts import addition
 from tests.runs.case_texts import shipped
-from tests.system.run_folder import ROOT, python
+from tests.system.run_folder import ROOT, protractile, python
 
 # What each room knows besides itself.
 BELOW = {"geometry", "dynamics"}
@@ -42,28 +42,21 @@ OF_RUNS = {
     "scipy.signal", "scipy.stats", "ufl", "vtkmodules", "xarray",
 }  # fmt: skip
 OF_CHECKS = {"numpy", "pydantic", "scipy"}
-PROGRAM = """
-import sys
-from protractile.runs import cli
-try:
-    cli.main(sys.argv[1:])
-except SystemExit as ended:
-    print(*sys.modules, file=sys.stderr)
-    raise
-"""
+STATEMENTS = ast.stmt | ast.ExceptHandler | ast.match_case
 
 
-def imported(node: ast.AST, for_types: bool) -> Iterator[str]:
+def imported(tree: ast.Module, for_types: bool) -> Iterator[str]:
     """Return every module, or name from a module, that a file imports, also inside functions."""
-    if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING" and not for_types:
-        return
-    if isinstance(node, ast.Import):
-        yield from (alias.name for alias in node.names)
-    if isinstance(node, ast.ImportFrom):
-        yield str(node.module)
-        yield from (f"{node.module}.{alias.name}" for alias in node.names)
-    for child in ast.iter_child_nodes(node):
-        yield from imported(child, for_types)
+    nodes: list[ast.AST] = [tree]
+    for node in nodes:
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING" and not for_types:
+            continue
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        if isinstance(node, ast.ImportFrom):
+            yield str(node.module)
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+        nodes += [child for child in ast.iter_child_nodes(node) if isinstance(child, STATEMENTS)]
 
 
 def module_name(path: Path) -> str:
@@ -78,13 +71,16 @@ def room_of(name: str) -> str:
     return parts[1] if len(parts) > 1 and parts[1] in ROOMS else parts[0]
 
 
+def modules_of(*rooms: str) -> list[Path]:
+    return [path for room in rooms for path in (ROOT / room).rglob("*.py")]
+
+
+PRODUCT = modules_of(*ROOMS.keys() - {"studies"})
+
+
 @pytest.fixture(scope="module")
 def trees() -> dict[str, ast.Module]:
-    return {
-        module_name(path): ast.parse(path.read_text("utf-8"))
-        for room in ROOMS
-        for path in (ROOT / room).rglob("*.py")
-    }
+    return {module_name(path): ast.parse(path.read_text("utf-8")) for path in modules_of(*ROOMS)}
 
 
 @pytest.mark.slow
@@ -118,7 +114,7 @@ def test_imports_point_downwards(trees: dict[str, ast.Module]) -> None:
         known = {parts[x] for x in typed[name] if x in parts}
         assert known <= {*order[: order.index(part) + 1]}, name
     # Studies and tests may import clients: they prove the product. Texts may hide imports, too.
-    texts = {name: ast.unparse(tree) for name, tree in trees.items()}
+    texts = {module_name(path): path.read_text("utf-8") for path in modules_of(*ROOMS)}
     for client in clients.CLIENTS:
         package = f"protractile.runs.{client}"
         others = [name for name in trees if not name.startswith((package, "studies"))]
@@ -126,37 +122,56 @@ def test_imports_point_downwards(trees: dict[str, ast.Module]) -> None:
         assert [name for name in others if package in texts[name]] == []
 
 
-def answer(*arguments: str, program: str = PROGRAM) -> tuple[str, set[str]]:
-    """Return the output of a successful command, and the modules that it has imported."""
-    done = python("-c", program, *arguments)
+PROGRAM = """
+import sys
+from protractile.runs import clients
+if sys.argv[1] == "alone":
+    clients.CLIENTS = ()
+from protractile.runs import cli
+for command in sys.argv[2:]:
+    try:
+        cli.main(command.split())
+    except SystemExit as ended:
+        assert not ended.code
+    for stream, last in ((sys.stdout, ""), (sys.stderr, " ".join(sys.modules))):
+        print(last, end="\f", file=stream)
+"""
+
+
+def answers(clients: str, *commands: str) -> Iterator[tuple[str, set[str]]]:
+    """Return the output of each successful command, and the modules imported so far."""
+    done = python("-c", PROGRAM, clients, *commands)
     assert done.returncode == 0, done.stderr
-    return done.stdout, set(done.stderr.split())
+    told, modules = (text.split("\f")[:-1] for text in (done.stdout, done.stderr))
+    return zip(told, (set(names.split()) for names in modules), strict=True)
 
 
-def test_options_import_no_numerical_library() -> None:
-    out, modules = answer("--version")
+@pytest.mark.slow
+def test_keys_and_commands_of_clients_exist_by_registration(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Reference: by construction."""
+    commands = "--help", "schema"
+    both = []
+    for command in commands:
+        assert not protractile(command)
+        both.append(capsys.readouterr().out)
+    (words, schema), (words_alone, alone) = both, (out for out, _ in answers("alone", *commands))
+    assert {*words.split()} - {*words_alone.split()} >= {"live", "export", "identify"}
+    keys, others = (json.loads(text)["properties"].keys() for text in (schema, alone))
+    assert keys - others == {"chart", "measured", "statements", "demand"}
+
+
+@pytest.mark.slow
+def test_check_and_prove_import_neither_solvers_nor_figures() -> None:
+    """Options import no numerical library."""
+    cases = f"check {CASES / 'spatial.toml'}", f"prove {CASES / 'inspection-arm.toml'}"
+    (out, modules), *others = answers("all", "--version", *cases)
     assert out == f"protractile {version('protractile')}\n"
     assert not modules & (OF_RUNS | OF_CHECKS)
-
-
-@pytest.mark.slow
-def test_keys_and_commands_of_clients_exist_by_registration() -> None:
-    """Reference: by construction."""
-    alone = f"from protractile.runs import clients; clients.CLIENTS = ()\n{PROGRAM}"
-    words, keys = [], []
-    for text in (PROGRAM, alone):
-        words.append({*answer("--help", program=text)[0].split()})
-        keys.append({*json.loads(answer("schema", program=text)[0])["properties"]})
-    assert words[0] - words[1] >= {"live", "export", "identify"}
-    assert keys[0] - keys[1] == {"chart", "measured", "statements", "demand"}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("command", "case"), [("check", "spatial"), ("prove", "inspection-arm")])
-def test_check_and_prove_import_neither_solvers_nor_figures(command: str, case: str) -> None:
-    out, modules = answer(command, str(CASES / f"{case}.toml"))
-    assert "static" in out.lower()
-    assert not modules & OF_RUNS
+    for out, modules in others:
+        assert "static" in out.lower()
+        assert not modules & OF_RUNS
 
 
 def test_modules_in_all_folders_count(tmp_path: Path) -> None:
@@ -179,11 +194,9 @@ KNOWS = re.compile(r"\"S\d+\"|\bstatements?\b|\bverdicts?\b|reproduced|contradic
 
 
 def test_no_other_module_knows_the_paper() -> None:
-    modules = [path for room in ROOMS.keys() - {"studies"} for path in (ROOT / room).rglob("*.py")]
-    general = {*modules, *(ROOT / "runs/report/templates").iterdir()}.difference(CLIENT)
+    general = {*PRODUCT, *(ROOT / "runs/report/templates").iterdir()}.difference(CLIENT)
     assert len(general) > 150
-    lines = [(path, line) for path in general for line in path.read_text("utf-8").splitlines()]
-    assert [(path, line) for path, line in lines if KNOWS.search(line)] == []
+    assert [path for path in general if KNOWS.search(path.read_text("utf-8"))] == []
 
 
 MOST_LINES, MOST_LINES_OF_A_FUNCTION = 450, 80
@@ -193,8 +206,7 @@ FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 def test_modules_and_functions_are_short(trees: dict[str, ast.Module]) -> None:
-    paths = [path for room in ROOMS.keys() - {"studies"} for path in (ROOT / room).rglob("*.py")]
-    lines = {path: path.read_text("utf-8").count("\n") for path in paths}
+    lines = {path: path.read_text("utf-8").count("\n") for path in PRODUCT}
     assert [path for path, number in lines.items() if number > MOST_LINES] == []
     product = (tree for name, tree in trees.items() if room_of(name) != "studies")
     functions = (node for tree in product for node in ast.walk(tree) if isinstance(node, FUNCTION))

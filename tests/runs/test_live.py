@@ -75,7 +75,7 @@ def test_a_boom_without_loads_has_a_chart() -> None:
 @pytest.mark.usefixtures("empty_cache")
 def test_beam_is_calibrated_by_a_shell_of_the_cache(tmp_path: Path, tools: BuildContext) -> None:
     """Reference: other code path, a calibrated beam of the case, also with another payload."""
-    shell = table("[[model]]", name="shell", kind="shell", mesh_size=0.3, contact_tolerance="any")
+    shell = table("[[model]]", name="shell", kind="shell", mesh_size=0.6, contact_tolerance="any")
     text, _, _ = Path(LIFT).read_text(encoding="utf-8").partition("[[model]]")
     (tmp_path / "lift.toml").write_text(text + shell, encoding="utf-8")
     draft = Draft.load(str(tmp_path / "lift.toml"))

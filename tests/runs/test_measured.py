@@ -36,7 +36,7 @@ CANTILEVER: dict[str, Any] = {
     "start": {"state": "equilibrium"}, "payload": {"mass": 100.0}, "segment": [BASE],
     "model": [
         {"name": "beam", "kind": "finite-element", "theory": "euler-bernoulli",
-         "element_length": 0.5, "rotary_inertia": False}
+         "element_length": 1.0, "rotary_inertia": False}
     ],
 }  # fmt: skip
 BOOM = CANTILEVER | {
@@ -398,7 +398,6 @@ def test_accelerations_after_a_release_have_one_minimum() -> None:
         "time": {"duration": 0.2, "output_step": 0.002, "step": 1.0e-4}, "load": [load],
         "damping": {"modal": 0.02}, "gravity": {"angle": 10.0}, "payload": {"mass": 20.0},
         "joint": [BOOM["joint"][0] | {"play": 0.003}],
-        "model": [{"name": "series", "kind": "kantorovich", "terms": [4, 4], "base": "complete"}],
     }  # fmt: skip
     head = channel("head", quantity="acceleration", segment="fly", x=8.0)
 
@@ -418,8 +417,8 @@ def test_accelerations_after_a_release_have_one_minimum() -> None:
 def test_chaotic_motions_are_compared_by_their_features() -> None:
     """Reference: by construction. The paper's boom hits its play; 16.8 mm within two errors."""
     tables = tomllib.loads((CASES / "paper.toml").read_text("utf-8"))
-    tables["time"] = {"duration": 8.0, "output_step": 0.01}
-    times = np.arange(0.0, 8.0, 0.02)
+    tables["time"] = {"duration": 6.0, "output_step": 0.02, "step": 1.0e-4}
+    times = np.arange(0.0, 6.0, 0.02)
 
     def case_of(curve: Array) -> Case:
         return measured(tables, channel("tip", uncertainty=2.0e-3, table=pairs(curve, times)))
@@ -428,7 +427,7 @@ def test_chaotic_motions_are_compared_by_their_features() -> None:
     ((_, (curve, *_)),) = experiment.evaluate({"joint.play": 0.0168})
     noisy = curve + np.random.default_rng(0).normal(0.0, 2.0e-3, curve.size)
     found = identify(case_of(noisy), {"joint.play": (0.004, 0.03)}, "kantorovich-5", starts=1)
-    assert found.residuals.horizons[0] < 6.0
+    assert found.residuals.horizons[0] < 4.5
     assert found.found.residuals.size == STEADY
     play = found.frame.loc["joint.play"]
     assert abs(play["value"] - 0.0168) < 2.0 * play["error"] < 4.0e-4

@@ -257,7 +257,9 @@ STEP = 1.0e-3
 def case() -> Case:
     coarse = select(shipped("coarse"), "", MODELS, None)
     table = EnsembleTable(members=5, relative=1e-6, seed=3, vary="load")
-    return change(coarse.model_copy(update={"ensemble": table}), **{"time.duration": 3.0})
+    return change(
+        coarse.model_copy(update={"ensemble": table}), **{"time.duration": 3.0, "time.step": 1.0e-4}
+    )
 
 
 @pytest.fixture(scope="module")

@@ -9,10 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from protractile.analysis.plate_buckling import (
-    PlateStresses,
-    reduced_stress,
-)
+from protractile.analysis.plate_buckling import PlateStresses, reduced_stress
 from protractile.analysis.rows import Row, Rows, static_rows
 from protractile.cases import run_case
 from protractile.geometry.box import BoxSection
@@ -215,7 +212,7 @@ def test_cycles_of_a_motion(tmp_path: Path) -> None:
     text = edited(
         ARM,
         ("{ partial", "{ detail_category = 80.0, partial"),
-        ("= 1.0 }", "= 4.0 }"),
+        ("= 1.0 }", "= 4.0, output_step = 4e-3 }"),
         ('["empty", "loaded"]', '["loaded", "loaded"]\nmotion = true'),
         (STORM, ""),
     )

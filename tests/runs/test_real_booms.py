@@ -10,10 +10,7 @@ import numpy as np
 import pytest
 
 from protractile.analysis.model import AnalysisModel
-from protractile.analysis.plate_buckling import (
-    measure_plates,
-    weakest_plates,
-)
+from protractile.analysis.plate_buckling import measure_plates, weakest_plates
 from protractile.analysis.rows import INITIAL, REST, Rows, extremes, static_rows
 from protractile.analysis.states import States
 from protractile.beam_model.statics import static_state

@@ -6,8 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from protractile.runs import CASES
-from protractile.runs.case import reading as case_file
 from protractile.runs.case.build import build_boom
 from protractile.runs.cautions.context import Context
 from protractile.runs.cautions.rules import OF_INPUTS, cautions
@@ -215,13 +213,9 @@ payload = {{ mass = 0.2 }}
 """
 
 
-@pytest.mark.slow
-def test_usual_booms_have_no_cautions(tmp_path: Path) -> None:
-    """Reference: shipped cranes, lifts and arms, and a boom of 1 m in a laboratory."""
+def test_a_usual_small_boom_has_no_cautions(tmp_path: Path) -> None:
+    """Reference: a boom of 1 m in a laboratory."""
     assert "caution" not in printed_check(read_case(tmp_path, LABORATORY))
-    for path in sorted(CASES.glob("*.toml")):
-        checked = case_file.load_checked(str(path))
-        assert cautions(Context(checked.case, checked.boom), OF_INPUTS) == [], path
 
 
 @pytest.mark.slow

@@ -26,16 +26,7 @@ from protractile.runs.sweep.sampling import QUANTILES, normal_points
 from protractile.runs.sweep.search import rigid_wall_cautions
 from protractile.runs.sweep.variation import numbers
 from tests.docs.conftest import toml_blocks
-from tests.runs.case_texts import (
-    CANTILEVER,
-    LOAD,
-    MASS,
-    THIN,
-    edited,
-    shipped,
-    static_tip,
-    table,
-)
+from tests.runs.case_texts import CANTILEVER, LOAD, MASS, THIN, edited, shipped, static_tip, table
 from tests.runs.summaries import printed, run
 from tests.system.run_folder import protractile
 
@@ -131,7 +122,7 @@ def test_changes_are_those_of_closed_forms(capsys: pytest.CaptureFixture[str]) -
 @pytest.mark.parametrize(
     ("name", "keys"),
     [
-        ("crane", ["payload.mass", "gravity.angle", "cylinder[1].ground[2]"]),
+        ("crane", ["gravity.angle", "cylinder[1].ground[2]"]),
         ("drawn-out", ["segment[1].load", "joint[1].extension"]),
     ],
 )
@@ -146,13 +137,17 @@ def test_changes_are_those_of_changed_cases(
     planned, changed = sampling.plan_changes("case.toml", None, None)
     found = sampling.changes(planned, changed, run(planned))
     (model,) = planned.coordinates["model"]
+    base = run_case(case, [model]).measure(model)
     for (place, value), of in zip(chosen, changed, strict=True):
         sides = sorted(of.points if len(of.points) == 2 else [0, *of.points])
-        runs = [
-            run_case(change(case, **{place.name: (1.0 + 0.01 * side) * value}), [model])
-            for side in (sides[0], 0, sides[1])
-        ]
-        low, base, high = (results.measure(model) for results in runs)
+        low, high = (
+            run_case(change(case, **{place.name: (1.0 + 0.01 * side) * value}), [model]).measure(
+                model
+            )
+            if side
+            else base
+            for side in sides
+        )
         for result in {*sampling.SHOWN} & {*found.columns}:
             difference = (high[result] - low[result]) / (sides[1] - sides[0])
             expected = pytest.approx(difference / abs(base[result]), rel=1e-6, abs=2e-7)

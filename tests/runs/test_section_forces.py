@@ -110,11 +110,7 @@ def test_a_cylinder_pulls_the_boom_off_its_pin(answers: Results) -> None:
     (force,) = answers.rows.where(model="beam", state="rest", quantity="cylinder_force")
     assert force.value == pytest.approx(FORCE, rel=1e-3)
     (arm,) = answers.curves.where(model="beam", state="rest")
-    for x, normal in (
-        (0.5, 0.5 * ALONG),
-        (2.0, -8.0 * ALONG + 0.8 * FORCE),
-        (6.0, -4.0 * ALONG),
-    ):
+    for x, normal in ((0.5, 0.5 * ALONG), (2.0, -8.0 * ALONG + 0.8 * FORCE), (6.0, -4.0 * ALONG)):
         assert np.interp(x, arm.x, arm.values["normal"]) == pytest.approx(normal, rel=2e-3)
 
 

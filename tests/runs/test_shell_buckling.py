@@ -106,14 +106,13 @@ HOIST = "hoist = { mass = 8000.0, stiffness = 4e6, travel = 20.0, time = 0.5 }"
 @pytest.mark.parametrize(
     ("text", "tip", "push", "time", "off"),
     [
-        (HEXAGON, "tip", 0.0, 0.0, 0.01),
         # Of a hoist after lift-off, while the load hangs; the factor was that of a beam.
         (edited(HEXAGON, ("payload = { mass = 6000.0 }", HOIST), ("angle = 0.0", "angle = 60.0")),
          "tip", 0.0, 0.5, 0.01),
         # Contacts that no load presses are as compliant: rigid ones raise the factor by 2 %.
         (BOXES, "tip_lateral", 100.0, 0.0, 0.003),
     ],
-    ids=["pressed", "hoist", "not pressed"],
+    ids=["hoist", "not pressed"],
 )  # fmt: skip
 def test_the_factor_is_that_of_the_growth_of_the_tip(
     tmp_path: Path, text: str, tip: str, push: float, time: float, off: float
@@ -126,21 +125,27 @@ def test_the_factor_is_that_of_the_growth_of_the_tip(
 @pytest.mark.slow
 @pytest.mark.parametrize("angle", [0.0, 90.0])
 def test_pads_are_compliant_with_and_without_loads_across(tmp_path: Path, angle: float) -> None:
-    """Reference: other view, the estimate of a beam whose sections distort; and the shell with
-    bonded joints, whose factor is about twice as large.
+    """Reference: other view, the estimate of a beam whose sections distort; the shell with bonded
+    joints, whose factor is about twice as large; with loads across, its growing tip.
     """
     text = HEXAGON.replace("angle = 0.0", f"angle = {angle}")
     built = shell_of(tmp_path, text)
     estimate = estimate_critical_factor(build_boom(read_case(tmp_path, text)))
     assert built.critical_factor == pytest.approx(estimate, rel=0.06)
     assert built.shell.critical_factor > 1.9 * built.critical_factor
+    if angle == 0.0:
+        assert built.critical_factor == pytest.approx(southwell(built, "tip"), rel=0.01)
 
 
-def run(name: str, duration: float) -> Results:
+def run(name: str, duration: float, modes: int) -> Results:
     """Return the results of a shipped case with a shell of few triangles, and a beam."""
-    shell = Shell(name="shell", kind="shell", mesh_size=0.25, contact_tolerance="any")
+    shell = Shell(name="shell", kind="shell", mesh_size=0.3, contact_tolerance="any")
     case = select(shipped(name), "", ["timoshenko"])
-    more = {"models": (*case.models, shell), "buckling": BucklingTable(modes=2), "statements": ()}
+    more = {
+        "models": (*case.models, shell),
+        "buckling": BucklingTable(modes=modes),
+        "statements": (),
+    }
     return run_case(change(case.model_copy(update=more), **{"time.duration": duration}))
 
 
@@ -153,7 +158,7 @@ def panels(results: Results, model: str) -> list[float]:
 @pytest.mark.slow
 def test_a_run_has_factors_of_shell_and_panels() -> None:
     """Reference: other code, panel formulas, below the shell with its restrained folds."""
-    results = run("coarse", 0.01)
+    results = run("coarse", 0.01, 2)
     summary = Summary.model_validate_json(str(results.summary))
     shell, beam = (summary.design.models[name] for name in ("shell", "timoshenko"))
     assert [one.segment for one in shell.buckling] == ["outer", "inner"]
@@ -180,7 +185,7 @@ def test_a_run_has_factors_of_shell_and_panels() -> None:
 @pytest.mark.slow
 def test_buckling_of_a_telescoping_shell_is_at_the_farthest_tip() -> None:
     """Reference: other code, panel formulas of the same state, at the largest extension."""
-    results = run("drawn-out", 0.05)
+    results = run("drawn-out", 0.05, 1)
     shell = results.summary.design.models["shell"]
     for own, estimate in zip(shell.buckling, panels(results, "shell"), strict=True):
         assert estimate < own.factors[0] < 2.0 * estimate

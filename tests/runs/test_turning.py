@@ -32,11 +32,7 @@ from protractile.runs.cautions.context import Context, State
 from protractile.runs.cautions.response import swings, turning
 from protractile.runs.pipeline.estimates import Preview
 from protractile.runs.pipeline.models import axial_travels
-from protractile.runs.pipeline.turning import (
-    drive_moments,
-    shaper_lines,
-    turning_lines,
-)
+from protractile.runs.pipeline.turning import drive_moments, shaper_lines, turning_lines
 from protractile.runs.report.drive_tables import luffing_table
 from tests.runs.case_texts import read_case, refused, shipped
 from tests.runs.summaries import static_tip
@@ -66,10 +62,8 @@ def test_bar_turned_with_a_constant_acceleration() -> None:
 
 
 def slewing_arm(tmp_path: Path, *tables: str, arm: str = ARM) -> Case:
-    gust, models = arm.index("[wind]"), arm.index("[[model]]")
-    case = read_case(tmp_path, arm[:gust] + "\n".join(tables) + "\n" + arm[models:])
-    nothing = dict.fromkeys(("load_cases", "combinations", "spectra"), ())
-    return case.model_copy(update=nothing | {"models": case.models[1:2]})
+    elements = f"[[model]]{arm.split('[[model]]')[2]}"
+    return read_case(tmp_path, "\n".join([arm[: arm.index("[wind]")], *tables, elements]))
 
 
 @pytest.mark.slow
@@ -326,7 +320,7 @@ def test_luffing_beam_column() -> None:
         pull = load - (stiffness - softer) @ state[:5]
         return np.concatenate([state[5:], np.linalg.solve(mass, pull)])
 
-    exact = solve_ivp(rates, (0.0, 2.0), np.zeros(10), "LSODA", motion.time, rtol=1e-7, atol=1e-9)
+    exact = solve_ivp(rates, (0.0, 2.0), np.zeros(10), "LSODA", motion.time, rtol=1e-5, atol=1e-7)
     tip = exact.y[:5].sum(axis=0)
     assert motion.tip.values == pytest.approx(tip, abs=2e-3 * np.abs(tip).max())
     plain = FixedStep(5.0e-4)(build_motion(system, 2.0, 0.01, at_rest=False))

@@ -190,8 +190,7 @@ def test_s3_counts_members_with_peaks_further_apart_after_six_seconds(
 
 
 @pytest.mark.parametrize(
-    ("apart", "expected"),
-    [(7, "reproduced"), (8, "undecided"), (25, "contradicted")],
+    ("apart", "expected"), [(7, "reproduced"), (8, "undecided"), (25, "contradicted")]
 )
 def test_three_standard_errors_decide(apart: int, expected: str) -> None:
     """Reference: analytic. The standard error of a share of one half of 32 members is 0.088."""
