@@ -209,10 +209,6 @@ def build_beam(
 
 def _calibration(beam: CalibratedTable, shell: Shell, boom: Boom) -> Calibration | None:
     """Return the calibration of a beam by a shell; None if the shell is not in the cache."""
-    import petsc4py
-
-    # With its signal handler, PETSc would end the process when a browser closes a connection.
-    petsc4py.init(["-no_signal_handler"])
     from protractile.beam_model.calibration import calibrate
     from protractile.shell_model.reduced_shell import ReducedShell
     from protractile.shell_model.standard import with_plays_and_loads

@@ -57,3 +57,10 @@ def test_only_the_first_compilation_needs_a_compiler_even_if_one_was_killed(
     )
     assert compile_form(tmp_path, False).stdout == "3.0\n"
     assert compile_form(tmp_path, False, CC="/no/cc").stdout == "3.0\n"
+
+
+def test_a_closed_connection_does_not_end_the_process() -> None:
+    """Reference: as Python starts, the signal is ignored; PETSc would abort all ranks."""
+    status = Path("/proc/self/status").read_text(encoding="utf-8")
+    ignored = int(status.partition("\nSigIgn:")[2].split()[0], 16)
+    assert ignored & 1 << (signal.SIGPIPE - 1)
