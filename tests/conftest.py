@@ -9,7 +9,6 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
-from functools import partial
 from math import inf
 from pathlib import Path
 
@@ -237,9 +236,3 @@ def _on_one_core() -> Iterator[None]:
         yield
     finally:
         os.sched_setaffinity(0, cores)
-
-
-@pytest.fixture
-def two_ranks(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
-    """Return a runner of Python programs on two ranks in an empty folder."""
-    return partial(ranks_in(tmp_path), 2)

@@ -55,12 +55,10 @@ def test_the_guide_finds_the_twin(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 @pytest.mark.usefixtures("in_this_process", "unprinted")
 def test_the_commands_write_their_folders(tmp_path: Path) -> None:
     """Reference: the guide, which names the files; the identified case is a case."""
+    text = (EXAMPLES / "measured-boom.toml").read_text("utf-8")
+    text = text.replace("duration = 2.0", "duration = 0.5").replace('"meas', f'"{EXAMPLES}/meas')
     case = tmp_path / "short.toml"
-    whole = (EXAMPLES / "measured-boom.toml").read_text("utf-8")
-    short = whole.replace("duration = 2.0", "duration = 0.5")
-    case.write_text(
-        short.replace('"measured-boom.csv"', f'"{EXAMPLES}/measured-boom.csv"'), "utf-8"
-    )
+    case.write_text(text, "utf-8")
     run = CliRunner().invoke
     compared = run(cli.app, ["compare", str(case), "--out", str(tmp_path / "compared")])
     assert compared.exit_code == 0, compared.output

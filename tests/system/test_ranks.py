@@ -1,13 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Equal results on two ranks, on one and on several cores, and messages that are printed once."""
 
-import io
 import json
 import re
-import shutil
 import subprocess
-from collections.abc import Callable
-from contextlib import redirect_stdout
 from pathlib import Path
 from typing import NamedTuple
 
@@ -27,8 +23,6 @@ from tests.unprinted import ONE_BLANK_FIGURE
 
 pytestmark = pytest.mark.slow
 
-
-Ranks = Callable[..., subprocess.CompletedProcess[str]]
 
 # Commands one after another, with one figure for the sake of time, and the results of shells.
 COMMANDS = f"""
@@ -109,14 +103,13 @@ def test_two_ranks_run_shells_and_beams_as_one_does(
     monkeypatch.chdir(on_ranks.folder)
     assert protractile(*RUN.split(), "one") == 0
     one, two = (summary_of(Path(folder)) for folder in ("one", "two"))
+    for model in (*one["models"].values(), *two["models"].values()):
+        del model["wall_time"], model["seconds"]
+    assert one["models"] == two["models"]
     # Pictures can be left to later.
     later = "not requested; protractile snapshot draws them"
     assert one["snapshots"] == two["snapshots"] == {"written": {}, "skipped": later}
     assert on_ranks.answer.stdout.count(f"\nno snapshots: {later}\n") == 1
-    one, two = one["models"], two["models"]
-    for model in (*one.values(), *two.values()):
-        del model["wall_time"], model["seconds"]
-    assert one == two
     for file in ("trajectories.nc", "fields.nc", "stress.nc"):
         alone, shared = (xr.load_dataset(f"{run}/{file}", engine="scipy") for run in ("one", "two"))
         xr.testing.assert_equal(alone, shared)
@@ -150,66 +143,41 @@ def test_ranks_give_the_serial_results_of_shells(on_ranks: OnRanks) -> None:
     assert found["dofs"] == serial["dofs"] == [780, 2220]
 
 
-def test_failure_of_one_rank_ends_both(two_ranks: Ranks) -> None:
-    answer = two_ranks(LONELY_FAILURE)
+def test_failure_of_one_rank_ends_both(tmp_path: Path) -> None:
+    answer = ranks_in(tmp_path)(2, LONELY_FAILURE)
     assert answer.returncode == 3
     assert complaints(answer) == ["protractile: case.toml: model[1]: no number is finite"]
 
 
-@pytest.fixture(scope="module")
-def swept(on_ranks: OnRanks) -> tuple[Path, str]:
-    """Return the folder of a sweep on all cores, and its output."""
-    out = on_ranks.folder / "out"
-    with redirect_stdout(io.StringIO()) as said:
-        command = "sweep", on_ranks.folder / "case.toml", *PLAYS, *MODELS, "--out", out
-        assert protractile(*command) == 0
-    return out, said.getvalue()
-
-
-def stamps(folder: str | Path) -> dict[str, int]:
+def stamps(folder: Path) -> dict[str, int]:
     """Return the inode of each point's file, which changes when the file is written again."""
-    points = Path(folder, "points").glob("[!.]*")
-    return {path.name: path.stat().st_ino for path in points}
+    return {path.name: path.stat().st_ino for path in (folder / "points").glob("[!.]*")}
 
 
-def test_two_ranks_write_the_same_sweep_as_two_cores(
-    on_ranks: OnRanks, swept: tuple[Path, str]
+def test_a_sweep_leaves_its_files_on_cores_and_ranks_and_is_taken_up(
+    on_ranks: OnRanks,
+    here: Path,
+    capsys: pytest.CaptureFixture[str],
+    request: pytest.FixtureRequest,
 ) -> None:
-    of_ranks, (of_cores, _) = on_ranks.folder / "swept", swept
-    assert (of_ranks / "sweep.csv").read_bytes() == (of_cores / "sweep.csv").read_bytes()
-    assert stamps(of_ranks).keys() == stamps(of_cores).keys()
-
-
-@pytest.mark.usefixtures("in_this_process")
-def test_a_sweep_leaves_its_files_and_is_taken_up(
-    swept: tuple[Path, str], here: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    folder, said = swept
-    assert said.splitlines()[0] == f"{folder}/sweep.csv"
+    case, out, of_ranks = write_coarse(here, 0.2), Path("out"), on_ranks.folder / "swept"
+    assert protractile("sweep", case, *PLAYS, *MODELS, "--out", "out") == 0
+    said = capsys.readouterr().out
+    assert said.splitlines()[0] == "out/sweep.csv"
     assert "Sweep over joint.play: 3 points" in said
-    shutil.copytree(folder, "out")
-    before = stamps("out")
+    before = stamps(out)
     assert len(before) == 3
+    assert before.keys() == stamps(of_ranks).keys()
+    assert (out / "sweep.csv").read_bytes() == (of_ranks / "sweep.csv").read_bytes()
     expected = {".manifest", "report.html", "sweep.nc", "sweep.csv"}
     expected |= {"figures/sweep-lines.png", *(f"points/{name}" for name in before)}
-    assert files(Path("out")) == expected
+    assert files(out) == expected
     with Image.open("out/figures/sweep-lines.png") as image:
         image.verify()
+    request.getfixturevalue("in_this_process")
     more = "--vary", "joint.play=0.006:0.014:5"
-    assert protractile("sweep", write_coarse(here, 0.2), *more, *MODELS, "--out", "out") == 0
+    assert protractile("sweep", case, *more, *MODELS, "--out", "out") == 0
     assert capsys.readouterr().err == ""
-    after = stamps("out")
+    after = stamps(out)
     assert len(after) == 5
     assert before.items() <= after.items()
-
-
-@pytest.mark.usefixtures("in_this_process")
-def test_failures_are_lines_and_count_if_nothing_is_left(
-    here: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    hard = "--vary", "time.step=2e-12,1e-11", "--models", "kantorovich-4", "--large"
-    assert protractile("sweep", write_coarse(here, 0.2).name, *hard, "--out", "out") == 3
-    first, second = capsys.readouterr().err.splitlines()
-    opening = "protractile: case.toml: --vary time.step="
-    assert first.startswith(f"{opening}2e-12: kantorovich-4: a step of 2e-12 s makes ")
-    assert second.startswith(f"{opening}1e-11: kantorovich-4: a step of 1e-11 s makes ")

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Verdicts of the whole paper case for any round-off."""
+"""Sweeps of which nothing is left; verdicts of the whole paper case for any round-off."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,8 +16,21 @@ from protractile.runs.pipeline.model_run import RunContext
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.run import run_case
 from tests.runs.case_texts import shipped
+from tests.system.run_folder import protractile, write_coarse
 
 pytestmark = pytest.mark.slow
+
+
+@pytest.mark.usefixtures("in_this_process")
+def test_failures_are_lines_and_count_if_nothing_is_left(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    hard = "--vary", "time.step=2e-12,1e-11", "--models", "kantorovich-4", "--large"
+    assert protractile("sweep", write_coarse(here, 0.2).name, *hard, "--out", "out") == 3
+    first, second = capsys.readouterr().err.splitlines()
+    opening = "protractile: case.toml: --vary time.step="
+    assert first.startswith(f"{opening}2e-12: kantorovich-4: a step of 2e-12 s makes ")
+    assert second.startswith(f"{opening}1e-11: kantorovich-4: a step of 1e-11 s makes ")
 
 
 # Verdicts that every sample decides, and those that it decides alike if at all.
