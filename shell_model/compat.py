@@ -71,9 +71,10 @@ def _compile_one_at_a_time(compile_form: Callable[..., Any]) -> Callable[..., An
             # Some file systems of clusters have no locks.
             with suppress(OSError):
                 fcntl.flock(lock, fcntl.LOCK_EX)
-            for source in folder.glob("*.c"):
-                if not source.with_suffix(".c.cached").exists():
-                    source.unlink()
+            names = {*os.listdir(folder)}
+            for source in names:
+                if source.endswith(".c") and f"{source}.cached" not in names:
+                    (folder / source).unlink()
             try:
                 return compile_form(comm, *arguments, **options)
             except Exception as error:
