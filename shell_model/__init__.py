@@ -6,8 +6,7 @@ from contextlib import suppress
 
 # With its signal handler, PETSc ends a process that writes to a closed connection, such as the
 # server of a live page or of a notebook.
-if "-no_signal_handler" not in os.environ.get("PETSC_OPTIONS", ""):
-    os.environ["PETSC_OPTIONS"] = os.environ.get("PETSC_OPTIONS", "") + " -no_signal_handler"
+os.environ["PETSC_OPTIONS"] = os.environ.get("PETSC_OPTIONS", "") + " -no_signal_handler"
 
 # The wheels of DOLFINx need MPI before every other library of theirs, which this module loads. It
 # aborts under the launcher of Open MPI, which `runs.process.ranks` refuses.

@@ -263,9 +263,7 @@ def fit(
     return Fit(lower, lower + span, lower + span * best.x, best.fun[own], best.jac[own], costs)
 
 
-def regress(
-    residuals: Residuals, low: Array, high: Array, start: Array, reach: float, starts: Array
-) -> Fit:
+def regress(residuals: Residuals, low: Array, high: Array, start: Array, reach: float) -> Fit:
     """Return the least squares of rough residuals near ``start``, by linear regression.
 
     Features of chaotic motions scatter between neighbouring unknowns. A search ends in one of many
@@ -274,7 +272,7 @@ def regress(
 
     >>> scatter = np.random.default_rng(0).normal
     >>> rough = lambda p: 9.0 * (p - 2.0) + scatter(0.0, 0.4, 40)
-    >>> found = regress(rough, np.zeros(1), np.full(1, 9.0), np.ones(1), 0.1, np.zeros(1))
+    >>> found = regress(rough, np.zeros(1), np.full(1, 9.0), np.ones(1), 0.1)
     >>> found.values.round(1), found.errors.round(3)
     (array([2.]), array([0.018]))
 
@@ -282,7 +280,6 @@ def regress(
         residuals: see :func:`fit`.
         low, high, start: bounds and first values (num_unknowns,).
         reach: distance of the farthest points, as a fraction of the range of each unknown.
-        starts: χ² of the searches before.
 
     Raises:
         NumericsError: the residuals cannot be computed at a point.
@@ -302,7 +299,8 @@ def regress(
         slope = np.transpose(slopes)
         rows, ends = np.vstack([slope, held]), np.append(at, np.zeros(start.size))
         u = middle + lsq_linear(rows, -ends, (-far, far)).x
-    return Fit(low, high, low + span * u, at + slope @ (u - middle), slope, starts)
+    left = at + slope @ (u - middle)
+    return Fit(low, high, low + span * u, left, slope, np.array([left @ left]))
 
 
 def jacobian(residuals: Residuals, u: Array, step: float = STEP) -> Array:

@@ -291,8 +291,7 @@ def identify(
     # Near the solution it is known what errors the readings share, and which motions are chaotic.
     residuals = Residuals.of(experiment, keys, found.values).with_shared_errors(found.values)
     if residuals.rough:
-        found = regress(residuals, low, high, found.values, residuals.step, found.starts)
+        again = regress(residuals, low, high, found.values, residuals.step)
     else:
         again = fit(residuals, low, high, found.values, 1, progress)
-        found = replace(again, starts=found.starts)
-    return Identification(keys, residuals, start, found)
+    return Identification(keys, residuals, start, replace(again, starts=found.starts))

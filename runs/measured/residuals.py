@@ -90,10 +90,12 @@ class Features(NamedTuple):
 def _vertex(time: Array, values: Array, peak: int) -> tuple[float, float]:
     """Return the time in s and the value of a peak by the parabola through it and its neighbours.
 
-    The time of the largest value alone would change in steps, which have no derivative.
+    The time of the largest value alone would change in steps, which have no derivative. Equal
+    values have their middle.
     """
     before, top, after = values[peak - 1 : peak + 2]
-    part = 0.5 * (before - after) / (before - 2.0 * top + after)
+    bend = before - 2.0 * top + after
+    part = 0.5 * (before - after) / bend if bend else 0.0
     return time[peak] + part * (time[1] - time[0]), top - 0.25 * (before - after) * part
 
 

@@ -106,11 +106,14 @@ def test_places(paper_boom: Boom, spatial_boom: Boom) -> None:
     assert [station.name for station in bonded.stations] == ["14"]
     assert bonded.stations_of(0) == (9.0, 10.0)
     # Fields are typed as they are in a boom, with x in m; a user may give other places before.
+    tail: Any = "tail"
+    near_head: Any = Distance(head=0.5)
+    before_head: Any = Distance(head=1.0)
     arm: dict[str, Any] = {
-        "supports": (Support("tail"), Support(2.0)),  # type: ignore[arg-type] # see above
-        "collars": (Collar((Distance(head=0.5), "head"), 0.01),),  # type: ignore[arg-type] # see above
+        "supports": (Support(tail), Support(2.0)),
+        "collars": (Collar((near_head, "head"), 0.01),),
     }
-    stop = Stop("inner", Distance(head=1.0), 0.002, PowerContact(1.0e9))  # type: ignore[arg-type] # see above
+    stop = Stop("inner", before_head, 0.002, PowerContact(1.0e9))
     boom = changed(paper_boom, arm, stops=(stop,))
     assert boom.segments[0].supports == (Support(0.0), Support(2.0))
     assert boom.segments[0].collars[0].span == (9.5, 10.0)

@@ -220,6 +220,9 @@ def test_a_peak_between_two_readings() -> None:
     found = Features.of(time, 1.0 - np.cos(2.0 * np.pi * 0.7 * time), 5.0)
     assert found.time_of_peak == pytest.approx(1.0 / 1.4, abs=1e-4)
     assert found.peak == pytest.approx(2.0, abs=1e-5)
+    # Too short for the filter, and flat at its peak, as readings of few digits are.
+    flat = Features.of(time[:7], np.array([0.0, 1.0, 2.0, 2.0, 2.0, 1.0, 0.0]), 5.0)
+    assert (flat.time_of_peak, flat.peak) == (time[3], 2.0)
 
 
 SERIES = [(0.0, 0.0), (1.0, 0.0)]
